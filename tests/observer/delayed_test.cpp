@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "../world/fixtures.hpp"
+#include "cambium/core/json.hpp"
+#include "cambium/core/set_parameter.hpp"
 #include "cambium/observer/observer_chain.hpp"
 #include "cambium/observer/observer_set.hpp"
 #include "cambium/observer/occluded.hpp"
@@ -22,8 +24,8 @@ using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack, Ob
 
 using Everything = cb::ObserverChain<cb::DelayedObserver<3>, cb::OccludedObserver, cb::ParametricObserver>;
 Everything const everything{
-    {cb::DelayedObserver<3>{.others = 2, .own = 1}, cb::OccludedObserver{.range = 80.0},
-     cb::ParametricObserver{.own = {.along = 0.2}, .others = {.along = 0.5, .speed = 0.3}, .lasting = 4}}};
+    cb::DelayedObserver<3>{.others = 2, .own = 1}, cb::OccludedObserver{.range = 80.0},
+    cb::ParametricObserver{.own = {.along = 0.2}, .others = {.along = 0.5, .speed = 0.3}, .lasting = 4}};
 
 template <class Observer>
 World<Observer> traffic(Observer const& observer, std::uint64_t seed = 1) {
@@ -128,7 +130,7 @@ TEST_CASE("copies, and worlds stepped on other threads, of late, blurred and sho
 TEST_CASE("a chain perceives one after the other, each stage with numbers of its own") {
   using Noise = cb::ParametricObserver;
   Noise const noise{.others = {.along = 1.0}};
-  cb::ObserverChain<Noise, Noise> const twice{{noise, noise}};
+  cb::ObserverChain<Noise, Noise> const twice{noise, noise};
   cb::RandomStream const random(1, 2, 3);
   cb::State const truth{0, 0, 0, 0, 10};
   double const first = noise.observe(truth, false, random.part(0)).x,
@@ -137,6 +139,17 @@ TEST_CASE("a chain perceives one after the other, each stage with numbers of its
   CHECK(twice.observe(truth, false, random).x == doctest::Approx(first + second));
   static_assert(cb::ObserverChain<cb::PerfectObserver, cb::PerfectObserver>::perfect);
   static_assert(Everything::past_steps == 3 && !Everything::perfect);
+}
+
+TEST_CASE("a chain's parameters have keys by the place of their stage, and are checked") {
+  auto chain = cb::from_json<Everything>(cb::to_json(everything));
+  CHECK(cb::equal_parameters(chain, everything));
+  cb::set_parameter(chain, "second.range", 50.0);
+  CHECK_FALSE(cb::equal_parameters(chain, everything));
+  World<Everything> world(straight_road(2, 1000.0));
+  CHECK_THROWS_WITH_AS(
+      world.add({.position = {100, -1.75}, .observer = Everything{{}, cb::OccludedObserver{.range = -1.0}, {}}}),
+      doctest::Contains("second.range"), cb::ParameterError);
 }
 
 TEST_CASE("agents of one world perceive by observers of their own kinds") {
@@ -164,7 +177,7 @@ TEST_CASE("a chain that changes nothing shows the truth itself, and is no other 
   World<cb::ObserverChain<cb::ParametricObserver, cb::DelayedObserver<2>>> blind(world.shared_map());
   blind.add({.position = {100, -1.75},
              .speed = 10,
-             .observer = {{cb::ParametricObserver{}, cb::DelayedObserver<2>{.others = 0}}}});
+             .observer = {cb::ParametricObserver{}, cb::DelayedObserver<2>{.others = 0}}});
   blind.add({.position = {130, -1.75}, .speed = 8});
   for (int i = 0; i < 20; ++i) {  // neither noise nor delay, but not known at compile time
     REQUIRE(world.step(0.2));

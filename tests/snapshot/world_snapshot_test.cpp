@@ -84,7 +84,8 @@ TEST_CASE("traffic of all models goes on bit by bit after it was saved and resto
 TEST_CASE("every execution, vehicle and observer model goes on bit by bit") {
   using Execution = ExecutionSet<InterpolateExecution, StanleyExecution, LqrExecution>;
   using Vehicles = DynamicSet<SingleTrack, KinematicPoint>;
-  using Eyes = ObserverSet<PerfectObserver, ParametricObserver, OccludedObserver, DelayedObserver<3>>;
+  using Chain = ObserverChain<OccludedObserver, ParametricObserver, DelayedObserver<2>>;
+  using Eyes = ObserverSet<PerfectObserver, ParametricObserver, OccludedObserver, DelayedObserver<3>, Chain>;
   using Models = World<BehaviorSet<IdmClassic, Mobil, Intersection>, Execution, Vehicles, Eyes>;
   auto const map = support::own_map("highway.xodr"), again = support::own_map("highway.xodr");
   for (std::uint32_t seed = 0; seed < 30; ++seed) {

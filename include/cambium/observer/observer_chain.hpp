@@ -2,19 +2,53 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
+#include <iterator>
 #include <type_traits>
+#include <utility>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/observer/observer_model.hpp"
 
 namespace cambium {
 
+namespace detail {
+
+template <std::size_t number, class Observer>
+struct ObserverStage {
+  Observer observer{};
+};
+
+template <class Numbers, class... Observers>
+struct ObserverStages;
+
+template <std::size_t... i, class... Observers>
+struct ObserverStages<std::index_sequence<i...>, Observers...> : ObserverStage<i, Observers>... {
+  static constexpr char const* keys[] = {"first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"};
+  static_assert(sizeof...(Observers) <= std::size(keys), "cambium::ObserverChain: takes at most eight observers");
+
+  static constexpr auto parameters() {
+    return parameter_list(parameter(keys[i], &ObserverStage<i, Observers>::observer, "-", {},
+                                    "a stage, by its place in the sequence")...);
+  }
+
+  /// Calls `f(observer...)` with all stages in order.
+  template <class F>
+  decltype(auto) with_stages(F const& f) const {
+    return f(ObserverStage<i, Observers>::observer...);
+  }
+};
+
+}  // namespace detail
+
 /// Applies several observers in sequence: each observes the result of the previous one. An agent is visible only if all
 /// stages see it; delays add up.
 template <ObserverModel... Observers>
-struct ObserverChain {
-  std::tuple<Observers...> stages{};
+struct ObserverChain : detail::ObserverStages<std::index_sequence_for<Observers...>, Observers...> {
+  using Stages = detail::ObserverStages<std::index_sequence_for<Observers...>, Observers...>;
+
+  ObserverChain() = default;
+  constexpr ObserverChain(Observers... stages) requires(sizeof...(Observers) > 0) : Stages{{std::move(stages)}...} {}
 
   static constexpr char const* name = "observer_chain";
   static constexpr char const* summary =
@@ -24,8 +58,8 @@ struct ObserverChain {
   static constexpr std::size_t past_steps = (past_steps_of<Observers> + ... + 0);
 
   [[nodiscard]] std::size_t steps_back(bool own) const {
-    return std::apply([own](auto const&... stage) { return (cambium::steps_back(stage, own) + ... + std::size_t{0}); },
-                      stages);
+    return this->with_stages(
+        [own](auto const&... stage) { return (cambium::steps_back(stage, own) + ... + std::size_t{0}); });
   }
 
   template <class Scene>
@@ -37,7 +71,7 @@ struct ObserverChain {
       else
         return true;
     };
-    return std::apply([&](auto const&... stage) { return (by(stage) && ...); }, stages);
+    return this->with_stages([&](auto const&... stage) { return (by(stage) && ...); });
   }
 
   template <class Scene>
@@ -49,7 +83,7 @@ struct ObserverChain {
       else
         return true;
     };
-    return std::apply([&](auto const&... stage) { return (by(stage) && ...); }, stages);
+    return this->with_stages([&](auto const&... stage) { return (by(stage) && ...); });
   }
 
   /// Returns a value, or a reference to the true state if all stages are perfect.
@@ -60,8 +94,8 @@ struct ObserverChain {
     } else {
       S seen = truth;
       std::uint32_t number = 0;
-      std::apply([&](auto const&... stage) { ((seen = stage.observe(S(seen), own, random.part(number++))), ...); },
-                 stages);
+      this->with_stages(
+          [&](auto const&... stage) { ((seen = stage.observe(S(seen), own, random.part(number++))), ...); });
       return seen;
     }
   }
