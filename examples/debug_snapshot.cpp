@@ -12,6 +12,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cambium/core/markup.hpp"
 #include "cambium/core/nearest_names.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/map/opendrive.hpp"
@@ -65,14 +66,15 @@ void print_world(examples::Thawed const& thawed) {
   for (auto const& agent : thawed.agents())
     std::printf("  %5s  %-15s %8.2f %8.2f  %8.2f   %8.2f  %s\n", agent.id.c_str(), agent.model.c_str(), agent.x,
                 agent.y, agent.speed, agent.acceleration, agent.status.c_str());
-  std::printf("\n  agent %s: %s\n  remembers: %s\n", thawed.ego().id.c_str(), thawed.behavior().c_str(),
-              thawed.memory().c_str());
+  std::printf("\n  agent %s: %s, but for what is usual:\n%s  remembers: %s", thawed.ego().id.c_str(),
+              thawed.ego().model.c_str(), thawed.behavior().c_str(), thawed.memory().c_str());
 }
 
 /// Applies "behavior.KEY=VALUE" or "memory.KEY=VALUE" to the ego.
 void edit(examples::Thawed& thawed, std::string const& text) {
   auto const sign = text.find('=');
-  auto const keys = cb::detail::split(text.substr(0, sign), ".");
+  auto const path = text.substr(0, sign);
+  auto const keys = cb::detail::split(path, ".");
   auto const value = sign == text.npos ? "" : text.substr(sign + 1);
   bool const is_memory = keys[0] == "memory";
   if (keys.size() < 2 || value.empty() || !(is_memory || keys[0] == "behavior"))

@@ -6,3 +6,11 @@ void examples::read_edit(char const* name, void* object, void const* usual, cb::
                          std::string const& json) {
   cb::detail::read_json_text(name, object, usual, transfer, json, "--edit", nullptr);
 }
+
+std::string examples::difference(void* object, void const* usual, cb::detail::TransferStruct transfer) {
+  try {
+    return cb::detail::json_text(object, usual, transfer, cb::JsonDetail::differences, nullptr);
+  } catch (cb::Error const& problem) {
+    return std::string("(") + problem.what() + ")\n";  // JSON has no NaN
+  }
+}

@@ -32,7 +32,7 @@ class Thawed {
   virtual ~Thawed() = default;
   [[nodiscard]] virtual std::vector<ThawedAgent> agents() const = 0;
   [[nodiscard]] virtual ThawedAgent ego() const = 0;
-  /// The ego's behaviour and what it remembers.
+  /// The ego's behaviour and what it remembers, as JSON without what is usual.
   [[nodiscard]] virtual std::string behavior() const = 0;
   [[nodiscard]] virtual std::string memory() const = 0;
   [[nodiscard]] virtual double time() const = 0;
@@ -52,6 +52,9 @@ class Thawed {
 /// Reads JSON into a described struct. Throws `ParameterError` at "--edit".
 void read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
                std::string const& json);
+
+/// A described struct as JSON, without what is usual.
+[[nodiscard]] std::string difference(void* object, void const* usual, cb::detail::TransferStruct transfer);
 
 /// Restores a snapshot on its map.
 using Thaw = std::function<std::unique_ptr<Thawed>(std::shared_ptr<cb::Map const> map, std::string_view bytes,
@@ -76,10 +79,10 @@ class ThawedWorld final : public Thawed {
   }
   [[nodiscard]] ThawedAgent ego() const override { return agent(slot()); }
   [[nodiscard]] std::string behavior() const override {
-    return record().behavior.visit([](auto const& model) { return cb::to_string(model); });
+    return record().behavior.visit([](auto const& model) { return json_of(model); });
   }
   [[nodiscard]] std::string memory() const override {
-    return std::visit([](auto const& memory) { return cb::to_string(memory); }, world_.record(cycle_.ego).memory);
+    return std::visit([](auto const& memory) { return json_of(memory); }, world_.record(cycle_.ego).memory);
   }
   [[nodiscard]] double time() const override { return world_.time(); }
   [[nodiscard]] double time_step() const override {
@@ -130,6 +133,12 @@ class ThawedWorld final : public Thawed {
   [[nodiscard]] cb::Recording& recording() override { return film_.value().recording(); }
 
  private:
+  template <class Model>
+  [[nodiscard]] static std::string json_of(Model const& model) {
+    Model const usual{};
+    Model copy = model;
+    return difference(&copy, &usual, &cb::detail::transfer_any<Model>);
+  }
   [[nodiscard]] cb::Slot slot() const { return world_.slot_of(cycle_.ego); }
   [[nodiscard]] auto const& record() const { return world_.roster().agents[slot()]; }
   [[nodiscard]] ThawedAgent agent(cb::Slot slot) const {

@@ -83,6 +83,7 @@ TEST_CASE("outcomes are the same after a message, bit by bit") {
   outcome.result.hit = AgentId{7};
   outcome.times = {.decisions = 4, .mean_ms = std::numeric_limits<double>::denorm_min(), .longest_ms = 2.5};
   outcome.replay = "<html>";
+  outcome.snapshot = std::string("a\0b", 3);
   outcome.problem = "none";
   auto const bytes = detail::outcome_bytes(outcome);
   auto const same = detail::read_outcome(bytes);
@@ -90,6 +91,7 @@ TEST_CASE("outcomes are the same after a message, bit by bit") {
   CHECK(to_string(same.result) == to_string(outcome.result));
   CHECK(same.times.mean_ms == outcome.times.mean_ms);
   CHECK(same.replay == "<html>");
+  CHECK(same.snapshot == outcome.snapshot);
   CHECK(same.problem == "none");
   CHECK(same.result.hit == AgentId{7});
   CHECK_FALSE(is_valid(detail::read_outcome(detail::outcome_bytes({})).result.hit));

@@ -261,7 +261,7 @@ TEST_CASE("hostile names are escaped in every format") {
   CHECK(replay_file_name("a/../b", "c d\xC3\xA4", 0, 0, 7) == "a_.._b_c_d___00000000_7.html");
 }
 
-TEST_CASE("the page lists all runs, filters them, and links the replays that there are") {
+TEST_CASE("the page lists all runs, filters them, and links the replays and snapshots that there are") {
   auto const chromium = browser::find();
   if (!chromium) return support::skip("no Chromium");
   auto report = make_report({noisy(1, 0.5, 150), group_of("idm", 10, [](RunResult& result, std::int64_t i) {
@@ -271,10 +271,11 @@ TEST_CASE("the page lists all runs, filters them, and links the replays that the
                              })});
   TemporaryFolder const folder;
   std::filesystem::create_directories(folder.path() / "replays");
-  write_file(
+  auto const replay =
       folder.path() / "replays" /
-          replay_file_name("merging", "idm", report.groups.back().set_hash, report.groups.back().parameters_hash, 4),
-      "a replay");
+      replay_file_name("merging", "idm", report.groups.back().set_hash, report.groups.back().parameters_hash, 4);
+  write_file(replay, "a replay");
+  write_file(std::filesystem::path(replay).replace_extension(".snapshot"), "a snapshot");
   auto const page = html_report(report, {.page_folder = folder.path()});
   CHECK(page == html_report(report, {.page_folder = folder.path()}));
   auto const file = folder.path() / "report.html";
@@ -299,7 +300,7 @@ say('text', rows().length);
   auto const said = [&](std::string const& name) { return browser::attribute(document, "<body", "data-" + name); };
   CHECK(said("failure") == "");
   CHECK(said("shown") == "100 160");
-  CHECK(said("links") == "replays/merging_idm_00000001_4.html");
+  CHECK(said("links") == "replays/merging_idm_00000001_4.html replays/merging_idm_00000001_4.snapshot");
   CHECK(said("idm") == "10");
   CHECK(said("sorted") == "success error 2");
   CHECK(said("command").find("examples/run benchmark --set 'my sets/merging.json' --only merging:2:idm --replay ") ==

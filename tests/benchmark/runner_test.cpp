@@ -420,7 +420,7 @@ TEST_CASE("replays that cannot be written are reported once, and the results are
                  }});
   CHECK(rows_of(store).size() == 15);
   REQUIRE(warnings.size() == 1);
-  CHECK(warnings.front().find("a replay is missing, and perhaps others: ") == 0);
+  CHECK(warnings.front().find("a replay or a snapshot is missing, and perhaps others: ") == 0);
   CHECK(warnings.front().find("replays") != std::string::npos);
 }
 

@@ -41,7 +41,7 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   CHECK(again.code == 0);
   CHECK(again.err.empty());
   CHECK(has(again.out, "because   a jerk of 1.68889 m/s^3"));
-  CHECK(has(again.out, "remembers: smooth_follower_memory: planned_at=0.2 s"));
+  CHECK(has(again.out, "remembers: {\"planned_at\": 0.2,"));
   CHECK(has(again.out, "bit-equal to what was recorded"));
   CHECK(has(again.out, "TEST_CASE(\"the cycle of 00000001.snapshot comes out as recorded\")"));
   CHECK(has(content_of(replay), "00000001.snapshot"));
@@ -72,6 +72,40 @@ TEST_CASE("a tree search's cycles come out bit-equal in every format, with the m
   }
 }
 
+TEST_CASE("failures of the benchmark leave snapshots that open at the desk") {
+  Program const benchmark("benchmark"), debug("debug_snapshot");
+  if (!benchmark.is_there() || !debug.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const db = (folder.path() / "r.db").string();
+  // IDM never gets to the goal; the others have no time to plan.
+  REQUIRE(benchmark.run({"--set", "cut_out", "--behaviors", "idm", "--scenarios", "1", "--db", db}).code == 0);
+  REQUIRE(benchmark.run({"--set", "cut_out", "--scenarios", "1", "--plan-limit", "1e-9", "--db", db}).code == 0);
+  std::vector<std::string> found;
+  for (auto const& file : snapshots_in(folder.path() / "r_replays"))
+    if (file.ends_with(".snapshot")) found.push_back(file);
+  REQUIRE(found.size() == 27);
+  for (auto const& file : found) {
+    CAPTURE(file);
+    auto const again = debug.run({file, "--cycles", "2", "--as-test"});
+    CHECK(again.code == 0);
+    bool const is_idm = has(again.out, "component idm");
+    CHECK(has(again.out, is_idm ? "because   cut_out, scenario " : "1 cycle before error: its plans took longer"));
+    CHECK(has(again.out, "bit-equal to what was recorded"));
+    CHECK(has(again.out, "(usual).thaw("));
+  }
+  auto const edited = debug.run({found.front(), "--edit", "behavior.desired_speed=3"});
+  CHECK(edited.code == 1);
+  CHECK(has(edited.out, "otherwise than recorded"));
+  auto const is_search = [](auto const& file) { return has(file, "mcts_hypothesis"); };
+  auto const search = debug.run(
+      {*std::find_if(found.begin(), found.end(), is_search), "--edit", "behavior.options.budget.iterations=0"});
+  CHECK(search.code == 2);
+  CHECK(has(search.err, "iterations"));
+  auto const elsewhere = debug.run({found.front(), "--map", CAMBIUM_SOURCE_DIR "/maps/merging.xodr"});
+  CHECK(elsewhere.code == 2);
+  CHECK(has(elsewhere.err, "was taken on another map"));
+}
+
 TEST_CASE("debug_snapshot names what is wrong with its file and options") {
   Program const record("record_snapshots"), debug("debug_snapshot");
   if (!record.is_there() || !debug.is_there()) return;
@@ -85,7 +119,7 @@ TEST_CASE("debug_snapshot names what is wrong with its file and options") {
   };
   CHECK(has(error({"/nowhere.snapshot"}), "/nowhere.snapshot: the file cannot be opened"));
   CHECK(has(error({CAMBIUM_SOURCE_DIR "/README.md"}), "is no snapshot of cambium"));
-  CHECK(has(error({file, "--edit", "behavior.jerk"}), "write behavior.KEY=NUMBER"));
+  CHECK(has(error({file, "--edit", "behavior.jerk"}), "write behavior.KEY=VALUE"));
   CHECK(has(error({file, "--edit", "behavior.jerky=1"}), "jerky"));
   CHECK(has(error({file, "--cycles", "0"}), "--cycles"));
   auto const bytes = content_of(file);

@@ -82,7 +82,7 @@ struct FailedRun {
   World const* after;
   RunPosition position;
   std::string map_file;
-  std::string note;  ///< "merging, scenario 17: collision in 15 cycles"
+  std::string note;  ///< "merging, scenario 17: 15 cycles before collision"
 };
 
 /// How long before the end of a run its snapshot is taken [s].
@@ -169,9 +169,8 @@ class LastWorlds {
     bool const is_error = !error.empty();
     std::size_t const left = threw ? 1 : std::min(worlds_.size() - 1, is_error ? std::size_t{1} : most_);
     std::size_t const before = worlds_.size() - 1 - (threw ? 0 : left);
-    auto const note = label + (label.empty() ? "" : ": ") +
-                      (is_error ? "error: " + error : run_outcomes[outcome_of(run.result)]) + " in " +
-                      std::to_string(left) + (left == 1 ? " cycle" : " cycles");
+    auto const note = label + (label.empty() ? "" : ": ") + std::to_string(left) + (left == 1 ? " cycle" : " cycles") +
+                      " before " + (is_error ? "error: " + error : run_outcomes[outcome_of(run.result)]);
     try {
       run.snapshot =
           keep(FailedRun<World>{worlds_[before], before + 1 < worlds_.size() ? &worlds_[before + 1] : nullptr,
