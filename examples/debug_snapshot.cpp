@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -135,11 +136,18 @@ int debug(Settings const& settings) {
   if (!settings.edit.empty()) edit(*thawed, settings.edit);
   thawed->film(fs::path(settings.file).filename().string());
 
-  if (settings.breaks) std::raise(SIGTRAP);
-  auto const result = thawed->run();  // the cycle: step into it
+  double const duration = thawed->time_step();
+  cb::StepResult result;
+  try {
+    if (settings.breaks) std::raise(SIGTRAP);
+    result = thawed->run();  // the cycle: step into it
+  } catch (std::exception const& error) {
+    std::printf("\nthe cycle of %.3f s threw an exception: %s\n", duration, error.what());
+    return 1;
+  }
 
   auto const ego = thawed->ego();
-  std::printf("\nthe cycle of %.3f s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", thawed->time_step(),
+  std::printf("\nthe cycle of %.3f s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", duration,
               to_string(result.problem), ego.id.c_str(), ego.x, ego.y, ego.speed, ego.acceleration);
   bool const is_equal = info.result && thawed->hash() == *info.result;
   bool const is_of_other = info.library != cb::library_version;
