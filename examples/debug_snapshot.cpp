@@ -1,6 +1,7 @@
 // The desk: restores a state that `record_snapshots` has kept, says what is in it, runs the cycle again and says
 // whether it came out bit-equal. Built to sit in a debugger: --break stops just before the cycle.
 
+#include <array>
 #include <cctype>
 #include <csignal>
 #include <cstdint>
@@ -67,8 +68,10 @@ void print_world(examples::Thawed const& thawed) {
   for (auto const& agent : thawed.agents())
     std::printf("  %5s  %-15s %8.2f %8.2f  %8.2f   %8.2f  %s\n", agent.id.c_str(), agent.model.c_str(), agent.x,
                 agent.y, agent.speed, agent.acceleration, agent.status.c_str());
-  std::printf("\n  agent %s: %s, but for what is usual:\n%s  remembers: %s", thawed.ego().id.c_str(),
-              thawed.ego().model.c_str(), thawed.behavior().c_str(), thawed.memory().c_str());
+  auto const [usual, behavior, memory] = std::array{std::string("{}\n"), thawed.behavior(), thawed.memory()};
+  std::printf("\n  agent %s: %s, %s  remembers: %s", thawed.ego().id.c_str(), thawed.ego().model.c_str(),
+              behavior == usual ? "all as usual\n" : ("what is not as usual: " + behavior).c_str(),
+              memory == usual ? "nothing\n" : memory.c_str());
 }
 
 /// Applies "behavior.KEY=VALUE" or "memory.KEY=VALUE" to the ego.

@@ -41,7 +41,7 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   CHECK(again.code == 0);
   CHECK(again.err.empty());
   CHECK(has(again.out, "because   a jerk of 1.68889 m/s^3"));
-  CHECK(has(again.out, "remembers: {\"planned_at\": 0.2,"));
+  CHECK(has(again.out, "remembers: {\n \"planned_at\": 0.2,"));
   CHECK(has(again.out, "bit-equal to what was recorded"));
   CHECK(has(again.out, "TEST_CASE(\"the cycle of 00000001.snapshot comes out as recorded\")"));
   CHECK(has(content_of(replay), "00000001.snapshot"));

@@ -4,24 +4,28 @@ set(fuzz_source ${CMAKE_CURRENT_LIST_DIR})
 set(fuzz_flags -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all
   -fno-sanitize-coverage=trace-cmp)  # the mutator knows the words that comparisons would tell it
 
-find_program(CAMBIUM_FUZZ_COMPILER NAMES clang++-19 clang++-14 clang++)
 find_library(CAMBIUM_FUZZ_PUGIXML pugixml)
-mark_as_advanced(CAMBIUM_FUZZ_COMPILER CAMBIUM_FUZZ_PUGIXML)
-if(CAMBIUM_FUZZ_COMPILER AND NOT DEFINED CAMBIUM_CAN_FUZZ)
+mark_as_advanced(CAMBIUM_FUZZ_PUGIXML)
+if(NOT DEFINED CAMBIUM_FUZZ_COMPILER)  # the first that has its libraries
   set(probe ${CMAKE_CURRENT_BINARY_DIR}/fuzz_probe)
   file(WRITE ${probe}.cpp
     "#include <cstddef>\n#include <vector>\nextern \"C\" int LLVMFuzzerTestOneInput(unsigned char const*, std::size_t) { return std::vector<int>().size(); }\n")
-  execute_process(COMMAND ${CAMBIUM_FUZZ_COMPILER} ${fuzz_flags} ${probe}.cpp -o ${probe}
-    RESULT_VARIABLE probe_result OUTPUT_QUIET ERROR_QUIET)
-  if(probe_result EQUAL 0)
-    set(probe_result TRUE)
-  else()
-    set(probe_result FALSE)
-  endif()
-  set(CAMBIUM_CAN_FUZZ ${probe_result} CACHE INTERNAL "CAMBIUM_FUZZ_COMPILER makes programs that fuzz")
+  set(found "")
+  foreach(name clang++-19 clang++-14 clang++)
+    find_program(candidate ${name} NO_CACHE)
+    if(candidate AND NOT found)
+      execute_process(COMMAND ${candidate} ${fuzz_flags} ${probe}.cpp -o ${probe}
+        RESULT_VARIABLE probe_result OUTPUT_QUIET ERROR_QUIET)
+      if(probe_result EQUAL 0)
+        set(found ${candidate})
+      endif()
+    endif()
+    unset(candidate)
+  endforeach()
+  set(CAMBIUM_FUZZ_COMPILER "${found}" CACHE INTERNAL "a clang that makes programs that fuzz; empty: there is none")
 endif()
 
-if(CAMBIUM_FUZZ_COMPILER AND CAMBIUM_FUZZ_PUGIXML AND CAMBIUM_CAN_FUZZ)
+if(CAMBIUM_FUZZ_COMPILER AND CAMBIUM_FUZZ_PUGIXML)
   set(fuzzer ${CMAKE_CURRENT_BINARY_DIR}/fuzz/opendrive_fuzz)
   file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found)  # what is new goes there
   # Another compiler than the project's, perhaps: so a command instead of a target of the project's own.

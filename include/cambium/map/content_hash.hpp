@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <string_view>
 
@@ -10,7 +11,8 @@
 namespace cambium::map {
 
 /// Hash of what traffic knows of a map: lanes, their paths, widths, links, limits, signals and conflicts' rules; not of
-/// the file's text. Equal files give equal hashes wherever the mathematical library is the same.
+/// the file's text. Numbers count by the thousandth, so equal files give equal hashes whatever the compiler's flags and
+/// the mathematical library.
 /// O(path segments) at first, then O(1).
 [[nodiscard]] inline std::uint64_t content_hash(Map const& map) {
   if (auto const known = map.known_content_hash().load(std::memory_order_relaxed); known != 0) return known;
@@ -18,7 +20,10 @@ namespace cambium::map {
   auto const add = [&hash](std::uint64_t bits) {
     for (int shift = 0; shift < 64; shift += 8) hash = (hash ^ (bits >> shift & 0xffu)) * 0x100000001b3u;
   };
-  auto const add_number = [&](double number) { add(std::bit_cast<std::uint64_t>(number + 0.0)); };
+  auto const add_number = [&](double number) {
+    constexpr double off = 0.3719;  // else round numbers would lie where the last bit decides
+    add(std::bit_cast<std::uint64_t>(std::floor(1e3 * number + off) + 0.0));
+  };
   auto const add_text = [&](std::string_view text) {
     for (char const c : text) add(static_cast<unsigned char>(c));
     add(text.size());

@@ -156,7 +156,9 @@ class XmlIn final : public boost::archive::polymorphic_xml_iarchive, public Arch
   void load(float& value) override { read(value); }
 };
 
-inline constexpr unsigned plain_archive = boost::archive::no_header | boost::archive::no_codecvt;
+/// Without Boost's comparison of tags: where that of a file is longer than the name expected, it reads behind the name.
+inline constexpr unsigned plain_archive =
+    boost::archive::no_header | boost::archive::no_codecvt | boost::archive::no_xml_tag_checking;
 
 template <class Archive>
 void save_parts(std::string& bytes, std::span<SavedPart const> parts) {
