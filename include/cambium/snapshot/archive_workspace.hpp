@@ -23,11 +23,6 @@ namespace cambium {
 
 namespace detail {
 
-template <class T>
-inline constexpr bool is_mcts_workspace = false;
-template <class Domain, class Options>
-inline constexpr bool is_mcts_workspace<MctsWorkspace<Domain, Options>> = true;
-
 /// Whether searches of `Domain` can keep a tree.
 template <class Domain>
 inline constexpr bool keeps_trees = is_deterministic<Domain> && !SamplesRoot<Domain>;

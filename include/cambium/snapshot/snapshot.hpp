@@ -19,7 +19,6 @@
 #include "cambium/core/write_file.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/snapshot/archive_fields.hpp"
-#include "cambium/snapshot/archive_workspace.hpp"
 #include "cambium/snapshot/archive_world.hpp"
 #include "cambium/snapshot/snapshot_error.hpp"
 
@@ -131,10 +130,15 @@ void read_snapshot(std::string_view bytes, std::string const& where, SceneOfPart
                    std::span<LoadedPart const> parts);
 [[nodiscard]] std::uint64_t hash_of_parts(std::span<SavedPart const> parts);
 
+/// Whether a part is a workspace, of which nothing but kept trees is saved.
+template <class T>
+inline constexpr bool is_workspace = requires {
+  &T::restore_kept;
+};
+
 /// Whether a part is read into another object first.
 template <class T>
-inline constexpr bool is_value_part = is_world<T> || is_mcts_workspace<T> ||
-                                      (Described<T> && std::is_copy_assignable_v<T>);
+inline constexpr bool is_value_part = is_world<T> || is_workspace<T> || (Described<T> && std::is_copy_assignable_v<T>);
 
 /// What a part is read into: a copy, a new workspace, or the part itself.
 template <class T>
@@ -144,7 +148,7 @@ struct ReadPart {
   Into into = begun(part);
 
   [[nodiscard]] static Into begun(T& part) {
-    if constexpr (is_mcts_workspace<T>)
+    if constexpr (is_workspace<T>)
       return T();
     else
       return part;
@@ -158,11 +162,11 @@ struct ReadPart {
 }  // namespace detail
 
 /// The state of `parts` as bytes: worlds, described structs such as a planner or its memory, the workspace of an `Mcts`
-/// with the trees that `keep` has kept, and classes of one's own that Boost.Serialization can save (with a member
-/// `template <class Archive> void serialize(Archive&, unsigned)`, or for `boost::archive::polymorphic_oarchive` and
-/// `polymorphic_iarchive` only). What belongs to the environment, such as a logger, such a class leaves out. A world is
-/// saved with everything but its map, which is noted by a hash, and its history. Throws `SnapshotError` if a part holds
-/// a struct that is not described. O(bytes).
+/// with the trees that `keep` has kept (include archive_workspace.hpp), and classes of one's own that
+/// Boost.Serialization can save (with a member `template <class Archive> void serialize(Archive&, unsigned)`, or for
+/// `boost::archive::polymorphic_oarchive` and `polymorphic_iarchive` only). What belongs to the environment, such as a
+/// logger, such a class leaves out. A world is saved with everything but its map, which is noted by a hash, and its
+/// history. Throws `SnapshotError` if a part holds a struct that is not described. O(bytes).
 template <class... Parts>
 [[nodiscard]] std::string to_snapshot(SnapshotOptions const& options, Parts const&... parts) {
   static_assert(sizeof...(Parts) > 0, "cambium::to_snapshot: name what to save: worlds, planners, memories");

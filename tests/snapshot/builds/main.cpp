@@ -26,6 +26,7 @@
 #include "cambium/snapshot.hpp"
 
 #include "../../../examples/common/desk.hpp"
+#include "../../support/sealed.hpp"
 
 namespace cb = cambium;
 namespace fs = std::filesystem;
@@ -167,14 +168,6 @@ void damage(std::string& bytes, std::size_t from, cb::RandomStream& random, std:
   if (bytes.size() <= from) bytes.resize(from + 1);
 }
 
-/// The bytes with a right length and checksum, so that the archive is read.
-std::string sealed_again(std::string const& bytes) {
-  auto const first = bytes.find('\n') + 1, second = bytes.find('\n', first) + 1;
-  auto const body = bytes.substr(second);
-  return bytes.substr(0, first) + std::to_string(body.size()) + " " + cb::detail::hex(cb::detail::checksum_of(body)) +
-         "\n" + body;
-}
-
 int mutate(fs::path const& folder, int count) {
   int refused = 0, worlds = 0;
   with_situations([&]<class World>(char const* name, World) {
@@ -188,7 +181,7 @@ int mutate(fs::path const& folder, int count) {
       for (auto k = 1 + random() % 3; k > 0; --k) damage(bytes, from, random, all[random() % all.size()]);
       World world(merging());
       try {
-        cb::from_snapshot(is_sealed ? sealed_again(bytes) : bytes, "mutant", world);
+        cb::from_snapshot(is_sealed ? support::sealed_again(bytes) : bytes, "mutant", world);
         if (std::string_view(name) != "search")  // its budget may have become endless
           static_cast<void>(world.step(time_step));
         ++worlds;
