@@ -66,7 +66,7 @@ Set one_of(std::size_t number) {
 
 TEST_CASE("traffic of all models goes on bit by bit after it was saved and restored, in each format") {
   auto const map = support::own_map("merging.xodr"), again = support::own_map("merging.xodr");
-  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+  for (std::uint32_t seed = 0; seed < 150; ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, 0, 0);
     Sim world(map, {.seed = seed, .time = 0.37 * seed});
@@ -88,7 +88,7 @@ TEST_CASE("every execution, vehicle and observer model goes on bit by bit") {
   using Eyes = ObserverSet<PerfectObserver, ParametricObserver, OccludedObserver, DelayedObserver<3>, Chain>;
   using Models = World<BehaviorSet<IdmClassic, Mobil, Intersection>, Execution, Vehicles, Eyes>;
   auto const map = support::own_map("highway.xodr"), again = support::own_map("highway.xodr");
-  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+  for (std::uint32_t seed = 0; seed < 80; ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, 0, 1);
     Models world(map, {.seed = seed});
@@ -115,7 +115,7 @@ TEST_CASE("a junction goes on with its lights, goals, objects, and people on way
   using Street = World<BehaviorSet<Intersection, Pedestrian, IdmClassic, StaticTrajectory>, InterpolateExecution,
                        DynamicSet<SingleTrack, KinematicPoint>>;
   auto const map = support::own_map("intersection_4way.xodr"), again = support::own_map("intersection_4way.xodr");
-  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
     CAPTURE(seed);
     Street world(map, {.seed = seed});
     auto const shift = static_cast<double>(seed);
@@ -179,7 +179,7 @@ TEST_CASE_TEMPLATE("a planner in traffic plans on bit by bit", Planner, Search, 
                    ProposalPlanner<Predicted>, FrenetPlanner<Predicted>) {
   using Road = World<BehaviorSet<Planner, IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
   auto const map = support::own_map("merging.xodr"), again = support::own_map("merging.xodr");
-  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, 0, 2);
     Road world(map, {.seed = seed});
