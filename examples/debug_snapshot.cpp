@@ -1,5 +1,5 @@
-// The desk: restores a state that `record_snapshots` has kept, says what is in it, runs the cycle again and says
-// whether it came out bit-equal. Built to sit in a debugger: --break stops just before the cycle.
+// The desk: restores a state that `record_snapshots` or the benchmark has kept, says what is in it, runs the cycle
+// again and says whether it came out bit-equal. Built to sit in a debugger: --break stops just before the cycle.
 
 #include <array>
 #include <cctype>
@@ -35,7 +35,8 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Settings {
-  std::string file, map, edit, replay;
+  std::string file, map, replay;
+  std::vector<std::string> edits;
   std::uint64_t cycles = 1;
   bool breaks = false, goes_on = false, as_test = false;
 };
@@ -52,25 +53,27 @@ std::string map_file_of(cb::SnapshotInfo const& info, Settings const& settings) 
                           "give the file by --map");
 }
 
-void print_head(cb::SnapshotInfo const& info, std::string const& file) {
-  std::printf("%s\n  component %s\n  parts     %s\n  taken by  cambium %s, %s, %s\n", file.c_str(),
-              info.component.c_str(), info.parts.c_str(), info.library.c_str(), info.build.c_str(),
-              info.platform.c_str());
+void print_head(cb::SnapshotInfo const& info, std::string const& file, std::string const& map_file) {
+  std::printf("%s\n", file.c_str());
+  if (!info.component.empty()) std::printf("  component %s\n", info.component.c_str());
+  std::printf("  parts     %s\n  taken by  cambium %s, %s, %s\n", info.parts.c_str(), info.library.c_str(),
+              info.build.c_str(), info.platform.c_str());
   if (info.map_hash)
-    std::printf("  map       %s (%016llx)\n", info.map_text.empty() ? info.map_file.c_str() : "embedded",
+    std::printf("  map       %s (%016llx)\n", map_file.empty() ? "embedded" : map_file.c_str(),
                 static_cast<unsigned long long>(*info.map_hash));
   if (!info.note.empty()) std::printf("  because   %s\n", info.note.c_str());
 }
 
 void print_world(examples::Thawed const& thawed) {
-  std::printf("  time      %.3f s\n\n  agent  model              x [m]    y [m]   v [m/s]  a [m/s^2]  status\n",
+  std::printf("  time      %.3f s\n\n  agent  model                   x [m]    y [m]   v [m/s]  a [m/s^2]  status\n",
               thawed.time());
   for (auto const& agent : thawed.agents())
-    std::printf("  %5s  %-15s %8.2f %8.2f  %8.2f   %8.2f  %s\n", agent.id.c_str(), agent.model.c_str(), agent.x,
+    std::printf("  %5s  %-20s %8.2f %8.2f  %8.2f   %8.2f  %s\n", agent.id.c_str(), agent.model.c_str(), agent.x,
                 agent.y, agent.speed, agent.acceleration, agent.status.c_str());
   auto const [usual, behavior, memory] = std::array{std::string("{}\n"), thawed.behavior(), thawed.memory()};
   std::printf("\n  agent %s: %s, %s  remembers: %s", thawed.ego().id.c_str(), thawed.ego().model.c_str(),
-              behavior == usual ? "all as usual\n" : ("what is not as usual: " + behavior).c_str(),
+              behavior == usual ? "parameters at their defaults\n"
+                                : ("with these parameters, else defaults: " + behavior).c_str(),
               memory == usual ? "nothing\n" : memory.c_str());
 }
 
@@ -84,11 +87,18 @@ void edit(examples::Thawed& thawed, std::string const& text) {
   if (keys.size() < 2 || value.empty() || !(is_memory || keys[0] == "behavior"))
     throw cb::ParameterError("--edit", "is '" + text + "'",
                              "write behavior.KEY=VALUE, such as behavior.jerk=1, or memory.KEY=VALUE");
-  bool const is_word = std::isalpha(static_cast<unsigned char>(value[0])) != 0 && value != "true" && value != "false";
+  auto const begin = value.find_first_not_of("+-");
+  bool const is_word = begin != value.npos && std::isalpha(static_cast<unsigned char>(value[begin])) != 0 &&
+                       value != "true" && value != "false";
   auto json = is_word ? cb::detail::json_string(value) : value;
+  examples::require_json(json, "--edit '" + text + "'");
   for (std::size_t i = keys.size() - 1; i > 0; --i)
     json = "{" + cb::detail::json_string(std::string(keys[i])) + ": " + json + "}";
-  thawed.edit(json, is_memory);
+  try {
+    thawed.edit(json, is_memory);
+  } catch (cb::Error const& problem) {
+    throw cb::ParameterError("--edit '" + text + "'", problem.what());
+  }
 }
 
 /// Where the types of a snapshot are: what thaws it, and how that is called in a test.
@@ -107,57 +117,74 @@ Types types_of(cb::SnapshotInfo const& info, std::string const& file) {
     if (name == info.component) return {driver.thaw, "benchmark::" + name + "(usual).thaw"};
     known.push_back(name);
   }
-  throw cb::SnapshotError(file,
-                          "is the state of a component '" + info.component + "', which this program does not know",
-                          cb::detail::suggestion(info.component, known));
+  throw cb::SnapshotError(
+      file,
+      info.component.empty() ? "does not say whose state it is"
+                             : "is the state of a component '" + info.component + "', which this program does not know",
+      cb::detail::suggestion(info.component, known));
 }
 
 void print_test(std::string const& file, std::string const& map_file, std::string const& call, std::uint64_t result) {
   auto const map = map_file.empty() ? "cambium::parse_opendrive(cambium::snapshot_info(bytes).map_text).map"
-                                    : "cambium::load_opendrive(\"" + map_file + "\").map";
+                                    : "examples::load_map(" + cb::detail::json_string(map_file) + ")";
   std::printf(
-      "\n// Needs common/desk.hpp and benchmark/traffic.hpp of the examples, their sources, and the snapshot.\n"
+      "\n// Needs the examples' sources, with these headers, and the snapshot.\n"
+      "#include <cambium/map/opendrive.hpp>\n#include \"benchmark/traffic.hpp\"\n#include "
+      "\"common/desk.hpp\"\n#include \"common/map_file.hpp\"\n\n"
       "TEST_CASE(\"the cycle of %s comes out as recorded\") {\n"
       "  examples::ParameterFile usual;\n"
-      "  std::string const file = \"%s\", bytes = cambium::read_snapshot_file(file);\n"
+      "  std::string const file = %s, bytes = cambium::read_snapshot_file(file);\n"
       "  auto const thawed = %s(\n      %s, bytes, file);\n"
-      "  REQUIRE(thawed->run());\n"
+      "  static_cast<void>(thawed->run());\n"
       "  CHECK(thawed->hash() == 0x%016llxu);\n}\n",
-      fs::path(file).filename().string().c_str(), file.c_str(), call.c_str(), map.c_str(),
+      fs::path(file).filename().string().c_str(), cb::detail::json_string(file).c_str(), call.c_str(), map.c_str(),
       static_cast<unsigned long long>(result));
+}
+
+/// How the ego comes out of a cycle.
+void print_ego(char const* what, double duration, cb::StepResult const& result, examples::ThawedAgent const& ego) {
+  std::printf("%s of %.3f s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", what, duration,
+              to_string(result.problem), ego.id.c_str(), ego.x, ego.y, ego.speed, ego.acceleration);
 }
 
 int debug(Settings const& settings) {
   auto const bytes = cb::read_snapshot_file(settings.file);
   auto const info = cb::snapshot_info(bytes, settings.file);
-  print_head(info, settings.file);
   auto const types = types_of(info, settings.file);
   auto const map_file = map_file_of(info, settings);
   auto const map = map_file.empty() ? cb::parse_opendrive(info.map_text).map : examples::load_map(map_file);
   auto const thawed = types.thaw(map, bytes, settings.file);
+  print_head(info, settings.file, map_file);
   print_world(*thawed);
-  if (!settings.edit.empty()) edit(*thawed, settings.edit);
-  thawed->film(fs::path(settings.file).filename().string());
+  for (auto const& text : settings.edits) edit(*thawed, text);
+  if (!settings.replay.empty()) thawed->film(fs::path(settings.file).filename().string());
 
   double const duration = thawed->time_step();
   cb::StepResult result;
+  std::fflush(stdout);
+  if (settings.breaks) std::fprintf(stderr, "debug_snapshot: stops before the cycle, for a debugger\n");
   try {
     if (settings.breaks) std::raise(SIGTRAP);
     result = thawed->run();  // the cycle: step into it
   } catch (std::exception const& error) {
     std::printf("\nthe cycle of %.3f s threw an exception: %s\n", duration, error.what());
+    if (settings.as_test || !settings.replay.empty()) std::printf("It has no result: neither a replay nor a test.\n");
     return 1;
   }
 
   auto const ego = thawed->ego();
-  std::printf("\nthe cycle of %.3f s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", duration,
-              to_string(result.problem), ego.id.c_str(), ego.x, ego.y, ego.speed, ego.acceleration);
+  print_ego("\nthe cycle", duration, result, ego);
   bool const is_equal = info.result && thawed->hash() == *info.result;
   bool const is_of_other = info.library != cb::library_version;
-  std::printf("%s\n", is_equal       ? "It came out bit-equal to what was recorded."
-                      : !info.result ? "Its result was not recorded: there is nothing to compare with."
-                      : is_of_other  ? "It cannot be compared: another version of cambium recorded it."
-                                     : "It came out otherwise than recorded.");
+  if (settings.edits.empty()) {
+    std::printf("%s\n", is_equal       ? "It came out bit-equal to what was recorded."
+                        : !info.result ? "Its result was not recorded: there is nothing to compare with."
+                        : is_of_other  ? "It cannot be compared: another version of cambium recorded it."
+                                       : "It came out otherwise than recorded.");
+  } else {
+    auto const as_recorded = types.thaw(map, bytes, settings.file);
+    print_ego("without the edit", duration, as_recorded->run(), as_recorded->ego());
+  }
   double const end = settings.goes_on ? thawed->time() + 60.0 : 0.0;
   bool collides = thawed->ego_collides();
   for (std::uint64_t i = 1; (i < settings.cycles || thawed->time() < end) && thawed->ego_drives(); ++i) {
@@ -176,6 +203,7 @@ int debug(Settings const& settings) {
     cb::write_svg_picture(figure, thawed->recording(), {.frame = 0});
     std::printf("replay: %s, figure: %s\n", settings.replay.c_str(), figure.string().c_str());
   }
+  if (settings.as_test && !info.result) std::printf("no test: there is no result to compare with\n");
   if (settings.as_test && info.result)
     print_test(fs::absolute(settings.file).string(), map_file.empty() ? "" : fs::absolute(map_file).string(),
                types.call, *info.result);
@@ -190,17 +218,28 @@ int main(int argc, char** argv) {
                    "debug_snapshot");
   program.add_option("FILE", settings.file, "a snapshot of record_snapshots, or of a failure in the benchmark")
       ->required();
-  program.add_option("--map", settings.map, "its map, if that is not where it was (OpenDRIVE)")->type_name("FILE");
-  program.add_option("--cycles", settings.cycles, "how many to run")
-      ->check(examples::whole_number(1, 100'000))
-      ->capture_default_str();
+  program.add_option("--map", settings.map, "its map, if that is not where it was (OpenDRIVE)")
+      ->type_name("FILE")
+      ->check(examples::not_empty());
+  auto* const cycles = program.add_option("--cycles", settings.cycles, "how many to run")
+                           ->check(examples::whole_number(1, 100'000))
+                           ->capture_default_str();
   program.add_flag("--break", settings.breaks, "stop in the debugger before the cycle (without one, the program ends)");
-  program.add_option("--edit", settings.edit, "change the ego first: behavior.jerk=1, memory.planned_at=0")
-      ->type_name("KEY=VALUE");
-  program.add_flag("--into-simulation", settings.goes_on, "go on for a minute");
-  program.add_flag("--as-test", settings.as_test, "print a test that repeats the cycle");
+  auto* const edits = program
+                          .add_option("--edit", settings.edits,
+                                      "change the ego first: behavior.jerk=1, memory.planned_at=0; may be repeated")
+                          ->type_name("KEY=VALUE")
+                          ->expected(1)
+                          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+                          ->check(examples::not_empty());
+  program.add_flag("--into-simulation", settings.goes_on, "go on for a minute")->excludes(cycles);
+  program.add_flag("--as-test", settings.as_test, "print a test that repeats the cycle as recorded")->excludes(edits);
   program.add_option("--replay", settings.replay, "write a replay that opens in a browser, and a figure beside it")
       ->type_name("OUT.html")
-      ->check(examples::not_empty());
+      ->check(CLI::Validator(
+          [](std::string const& file) {
+            return file.ends_with(".html") ? "" : "is '" + file + "'; give a name that ends in .html";
+          },
+          ""));
   return examples::run_program(program, argc, argv, [&] { return debug(settings); });
 }

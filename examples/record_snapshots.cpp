@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -59,7 +60,7 @@ void drive(Settings const& settings) {
   options.snapshot.format = settings.format == "xml"    ? cb::SnapshotFormat::xml
                             : settings.format == "text" ? cb::SnapshotFormat::text
                                                         : cb::SnapshotFormat::binary;
-  options.snapshot.map_file = settings.map;
+  options.snapshot.map_file = std::filesystem::absolute(settings.map).string();
   options.snapshot.component = desk::component;
   if (settings.embeds_map) {
     std::ifstream file(settings.map);
@@ -85,8 +86,14 @@ void drive(Settings const& settings) {
   while (world.time() < settings.seconds && world.status(desk::ego) == cb::AgentStatus::driving) {
     cycle.late = cb::uniform01(random) < settings.late ? 0.5 : 0.0;  // now and then the machine is busy
     recorder.begin(world, cycle);
-    auto const result = world.step(cycle.time_step + cycle.late);
-    if (!result) recorder.trigger(to_string(result.problem));
+    try {
+      auto const result = world.step(cycle.time_step + cycle.late);
+      if (!result) recorder.trigger(to_string(result.problem));
+    } catch (std::exception const& error) {
+      recorder.trigger(std::string("exception: ") + error.what());
+      recorder.end();
+      throw;
+    }
     recorder.end(world);
     is_first = false;
     ++cycles;

@@ -14,3 +14,11 @@ std::string examples::difference(void* object, void const* usual, cb::detail::Tr
     return std::string("(") + problem.what() + ")\n";  // JSON has no NaN
   }
 }
+
+void examples::require_json(std::string const& text, std::string const& where) {
+  try {
+    static_cast<void>(cb::detail::parse_json(text, where));
+  } catch (cb::Error const&) {
+    throw cb::ParameterError(where, "has no value of JSON", "write a number, a word, true, false, or a list: [1, 2]");
+  }
+}

@@ -53,6 +53,9 @@ class Thawed {
 void read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
                std::string const& json);
 
+/// Throws `ParameterError` at `where` unless the text is one value.
+void require_json(std::string const& text, std::string const& where);
+
 /// A described struct as JSON, without what is usual.
 [[nodiscard]] std::string difference(void* object, void const* usual, cb::detail::TransferStruct transfer);
 
@@ -117,6 +120,7 @@ class ThawedWorld final : public Thawed {
     auto frame = world_.frame();
     frame.agents[slot()].memory = memory;  // what it remembers stays
     world_.restore(frame);
+    cb::from_snapshot(cb::to_snapshot({}, world_), "the edited world", world_);  // checks what the agent remembers
   }
 
   cb::StepResult run() override {

@@ -95,12 +95,17 @@ TEST_CASE("failures of the benchmark leave snapshots that open at the desk") {
   }
   auto const edited = debug.run({found.front(), "--edit", "behavior.desired_speed=3"});
   CHECK(edited.code == 1);
-  CHECK(has(edited.out, "otherwise than recorded"));
+  CHECK(has(edited.out, "without the edit of 0.200 s"));
   auto const is_search = [](auto const& file) { return has(file, "mcts_hypothesis"); };
   auto const search = debug.run(
       {*std::find_if(found.begin(), found.end(), is_search), "--edit", "behavior.options.budget.iterations=0"});
   CHECK(search.code == 2);
   CHECK(has(search.err, "iterations"));
+  auto const is_mobil = [](auto const& file) { return has(file, "cut_out_mobil"); };
+  auto const astray =
+      debug.run({*std::find_if(found.begin(), found.end(), is_mobil), "--edit", "memory.change.target=99"});
+  CHECK(astray.code == 2);
+  CHECK(has(astray.err, "remembers a lane that its road lacks"));
   auto const elsewhere = debug.run({found.front(), "--map", CAMBIUM_SOURCE_DIR "/maps/merging.xodr"});
   CHECK(elsewhere.code == 2);
   CHECK(has(elsewhere.err, "was taken on another map"));
@@ -121,7 +126,12 @@ TEST_CASE("debug_snapshot names what is wrong with its file and options") {
   CHECK(has(error({CAMBIUM_SOURCE_DIR "/README.md"}), "is no snapshot of cambium"));
   CHECK(has(error({file, "--edit", "behavior.jerk"}), "write behavior.KEY=VALUE"));
   CHECK(has(error({file, "--edit", "behavior.jerky=1"}), "jerky"));
+  CHECK(has(error({file, "--edit", "behavior.jerk=-inf"}), "--edit 'behavior.jerk=-inf'"));
+  CHECK(has(error({file, "--edit", ""}), "--edit"));
+  CHECK(has(error({file, "--edit", "behavior.jerk=1", "--as-test"}), "--as-test"));
   CHECK(has(error({file, "--cycles", "0"}), "--cycles"));
+  CHECK(has(error({file, "--replay", file}), "ends in .html"));
+  CHECK(debug.run({file, "--edit", "behavior.jerk=1", "--edit", "memory.planned_at=0.5"}).code == 1);
   auto const bytes = content_of(file);
   auto const cut = (folder.path() / "cut").string();
   std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size() / 2);

@@ -6,7 +6,7 @@ set(fuzz_flags -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined,float-cast
 
 find_library(CAMBIUM_FUZZ_PUGIXML pugixml)
 mark_as_advanced(CAMBIUM_FUZZ_PUGIXML)
-if(NOT DEFINED CAMBIUM_FUZZ_COMPILER)  # the first that has its libraries
+if(NOT DEFINED CAMBIUM_FUZZING_CLANG)  # the first that has its libraries
   set(probe ${CMAKE_CURRENT_BINARY_DIR}/fuzz_probe)
   file(WRITE ${probe}.cpp
     "#include <cstddef>\n#include <vector>\nextern \"C\" int LLVMFuzzerTestOneInput(unsigned char const*, std::size_t) { return std::vector<int>().size(); }\n")
@@ -22,15 +22,15 @@ if(NOT DEFINED CAMBIUM_FUZZ_COMPILER)  # the first that has its libraries
     endif()
     unset(candidate)
   endforeach()
-  set(CAMBIUM_FUZZ_COMPILER "${found}" CACHE INTERNAL "a clang that makes programs that fuzz; empty: there is none")
+  set(CAMBIUM_FUZZING_CLANG "${found}" CACHE INTERNAL "a clang that makes programs that fuzz; empty: there is none")
 endif()
 
-if(CAMBIUM_FUZZ_COMPILER AND CAMBIUM_FUZZ_PUGIXML)
+if(CAMBIUM_FUZZING_CLANG AND CAMBIUM_FUZZ_PUGIXML)
   set(fuzzer ${CMAKE_CURRENT_BINARY_DIR}/fuzz/opendrive_fuzz)
   file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found)  # what is new goes there
   # Another compiler than the project's, perhaps: so a command instead of a target of the project's own.
   add_custom_command(OUTPUT ${fuzzer}
-    COMMAND ${CAMBIUM_FUZZ_COMPILER} ${fuzz_flags} @${compile_flags} ${CAMBIUM_WARNINGS} -Werror -MMD -MT ${fuzzer}
+    COMMAND ${CAMBIUM_FUZZING_CLANG} ${fuzz_flags} @${compile_flags} ${CAMBIUM_WARNINGS} -Werror -MMD -MT ${fuzzer}
       -MF ${fuzzer}.d ${fuzz_source}/opendrive_fuzz.cpp ${CAMBIUM_FUZZ_PUGIXML} -o ${fuzzer}
     DEPENDS ${fuzz_source}/opendrive_fuzz.cpp ${compile_flags} DEPFILE ${fuzzer}.d
     COMMENT "opendrive_fuzz" VERBATIM)

@@ -4,6 +4,8 @@
 
 #include <map>
 #include <thread>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "../world/fixtures.hpp"
@@ -145,6 +147,10 @@ TEST_CASE("a chain's parameters have keys by the place of their stage, and are c
   auto chain = cb::from_json<Everything>(cb::to_json(everything));
   CHECK(cb::equal_parameters(chain, everything));
   cb::set_parameter(chain, "second.range", 50.0);
+  CHECK(chain.stage<1>().range == 50.0);
+  chain.stage<0>().own = 2;
+  CHECK(std::as_const(chain).stage<0>().own == 2);
+  static_assert(!std::is_convertible_v<cb::ParametricObserver, cb::ObserverChain<cb::ParametricObserver>>);
   CHECK_FALSE(cb::equal_parameters(chain, everything));
   World<Everything> world(straight_road(2, 1000.0));
   CHECK_THROWS_WITH_AS(

@@ -184,6 +184,38 @@ TEST_CASE("a disk that takes no more and a queue that is full are counted, and t
   CHECK_THROWS_AS(SnapshotRecorder({.folder = "/proc/none"}), SnapshotError);
 }
 
+namespace {
+
+/// A component that cannot always be saved.
+struct Moody {
+  bool throws = false;
+  int value = 0;
+  template <class Archive>
+  void serialize(Archive& archive, unsigned) {
+    if (throws) throw std::runtime_error("not now");
+    archive& value;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a part that cannot be saved is counted, and the cycle runs") {
+  auto const where = folder("moody");
+  SnapshotRecorder recorder({.folder = where, .each_cycle = true, .watches = {[]() -> std::string { throw 7; }}});
+  Moody moody{.throws = true};
+  recorder.run([&] { ++moody.value; }, moody);
+  CHECK(moody.value == 1);
+  CHECK(recorder.failed() == 1);
+  CHECK(recorder.problem() == "not now");
+  CHECK(files_in(where).empty());
+  moody.throws = false;
+  recorder.run([&] { moody.throws = true; }, moody);
+  CHECK(recorder.written() == 1);
+  auto const info = info_of(recorder.last_file());
+  CHECK_FALSE(info.result);  // what came out could not be saved
+  CHECK(info.note.find("a watch failed") != std::string::npos);
+}
+
 TEST_CASE("a log of another thread may trigger") {
   auto const where = folder("threads");
   SnapshotRecorder recorder({.folder = where, .in_background = true});

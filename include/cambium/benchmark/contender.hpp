@@ -73,9 +73,9 @@ struct RunPosition {
   }
 };
 
-/// A run that was no success, for what keeps it (`freeze_run`): the world `before` a cycle, and, unless that threw an
-/// exception, `after` it. The cycle is the one that ended the run by an error, and otherwise lies `freeze_lead` before
-/// the end, when that could still be averted.
+/// A run that was no success, for what keeps it (`freeze_run`): the world `before` a cycle, and `after` it, but null if
+/// that threw an exception, or if the ego collided at the start. The cycle is the one that ended the run by an error,
+/// and otherwise lies `freeze_lead` before the end, when that could still be averted.
 template <class World>
 struct FailedRun {
   World const& before;
@@ -364,11 +364,12 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
       if (records) {
         film.emplace(world);
         film->show_as(scenario.ego, RecordedAgentKind::ego, "ego");
-        if (keeps) last.add(world);
+        if constexpr (keeps) last.add(world);
       }
       run.result = detail::run_world(world, own, options, [&](World const& now) -> std::string {
         if (film) film->record(now);
-        if (film && keeps) last.add(now);
+        if constexpr (keeps)
+          if (film) last.add(now);
         double const planned = 1e-3 * (clock.sum_ms + clock.others_ms);
         if (!(planned > options.plan_limit)) return {};
         return plans_too_long + detail::rounded_text(options.plan_limit) + " s together";

@@ -48,7 +48,18 @@ struct ObserverChain : detail::ObserverStages<std::index_sequence_for<Observers.
   using Stages = detail::ObserverStages<std::index_sequence_for<Observers...>, Observers...>;
 
   ObserverChain() = default;
-  constexpr ObserverChain(Observers... stages) requires(sizeof...(Observers) > 0) : Stages{{std::move(stages)}...} {}
+  explicit(sizeof...(Observers) == 1) constexpr ObserverChain(Observers... stages) requires(sizeof...(Observers) > 0)
+      : Stages{{std::move(stages)}...} {}
+
+  /// The stage of that number.
+  template <std::size_t number>
+  [[nodiscard]] constexpr auto& stage() {
+    return observer_of<number>(*this);
+  }
+  template <std::size_t number>
+  [[nodiscard]] constexpr auto const& stage() const {
+    return observer_of<number>(*this);
+  }
 
   static constexpr char const* name = "observer_chain";
   static constexpr char const* summary =
@@ -98,6 +109,16 @@ struct ObserverChain : detail::ObserverStages<std::index_sequence_for<Observers.
           [&](auto const&... stage) { ((seen = stage.observe(S(seen), own, random.part(number++))), ...); });
       return seen;
     }
+  }
+
+ private:
+  template <std::size_t number, class Observer>
+  [[nodiscard]] static constexpr Observer& observer_of(detail::ObserverStage<number, Observer>& stage) {
+    return stage.observer;
+  }
+  template <std::size_t number, class Observer>
+  [[nodiscard]] static constexpr Observer const& observer_of(detail::ObserverStage<number, Observer> const& stage) {
+    return stage.observer;
   }
 };
 

@@ -349,9 +349,11 @@ class FieldReader {
         value = static_cast<Value>(held);
         if (std::is_same_v<Value, bool> && held > stored(true)) damaged();
       }
-      if (std::is_integral_v<decltype(stored(value))> && !ParameterValue(value).in(info.range))
+      // It may be an index. A range of one value is none: `{}`.
+      if (std::is_integral_v<decltype(stored(value))> && info.range.low < info.range.high &&
+          !ParameterValue(value).in(info.range))
         throw ParameterError(where_ + ": " + key, "is " + value_text(info, ParameterValue(value)),
-                             "it lies outside of " + range_text(info) + ": take another snapshot");
+                             "it lies outside of " + range_text(info) + ", the range of its description");
     }
   }
 
@@ -386,7 +388,8 @@ class FieldReader {
   }
 
   [[noreturn]] void damaged() const {
-    throw SnapshotError(where_, "its content contradicts itself", "it is damaged: take another copy");
+    throw SnapshotError(where_, "its content contradicts itself",
+                        "restore the types that were saved; if these are the same, it is damaged");
   }
 
   template <Described T>

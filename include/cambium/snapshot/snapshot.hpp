@@ -24,6 +24,9 @@
 
 namespace cambium {
 
+template <class Domain, class Options>
+class MctsWorkspace;
+
 /// The kind of archive in a snapshot, of Boost.Serialization.
 enum class SnapshotFormat : std::uint8_t {
   binary,  ///< small and fast; only for platforms with the same sizes and order of bytes
@@ -132,9 +135,9 @@ void read_snapshot(std::string_view bytes, std::string const& where, SceneOfPart
 
 /// Whether a part is a workspace, of which nothing but kept trees is saved.
 template <class T>
-inline constexpr bool is_workspace = requires {
-  &T::restore_kept;
-};
+inline constexpr bool is_workspace = false;
+template <class Domain, class Options>
+inline constexpr bool is_workspace<MctsWorkspace<Domain, Options>> = true;
 
 /// Whether a part is read into another object first.
 template <class T>
@@ -175,12 +178,11 @@ template <class... Parts>
 }
 
 /// Restores `parts` from a snapshot of parts of the same names and order. A world keeps its map, which must be the one
-/// of the snapshot; `snapshot_info` says where that is. A kept tree takes the map of its world, which must come before
-/// the workspace. A class of one's own keeps what it does not save. Throws
-/// `SnapshotError`, before anything is read, if the bytes are no snapshot, damaged, of a newer version, of another
-/// platform (binary ones), of other parts or of another map; and if the content does not fit the parts. Then worlds,
-/// workspaces and described structs are unchanged; a class of one's own may be half read. `where`: the file, for
-/// messages. O(bytes).
+/// of the snapshot; `snapshot_info` says where that is. A kept tree takes the map of its world, which must come right
+/// before the workspace. A class of one's own keeps what it does not save. Throws `SnapshotError`, before anything is
+/// read, if the bytes are no snapshot, damaged, of a newer version, of another platform (binary ones), of other parts
+/// or of another map; and if the content does not fit the parts. Then worlds, workspaces and described structs are
+/// unchanged; a class of one's own may be half read. `where`: the file, for messages. O(bytes).
 template <class... Parts>
 void from_snapshot(std::string_view bytes, std::string const& where, Parts&... parts) {
   static_assert(sizeof...(Parts) > 0, "cambium::from_snapshot: name what to restore: worlds, planners, memories");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -9,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -39,8 +41,8 @@ struct SnapshotRecorderOptions {
 
 /// Keeps the state from just before a cycle of planning or simulation, if there turns out to be a reason: an exception,
 /// an invalid step, a cycle that takes too long, a watch, or whatever calls `trigger`, such as a log for errors. The
-/// files survive the end of the process; a failure to write is counted, never thrown. Its functions but `trigger` are
-/// for one thread.
+/// files survive the end of the process; a failure to save or to write is counted, never thrown. Its functions but
+/// `trigger` are for one thread.
 class SnapshotRecorder {
  public:
   /// Throws `SnapshotError` if the folder cannot be made. Numbers go on behind the files that are there.
@@ -78,10 +80,12 @@ class SnapshotRecorder {
   template <class... Results>
   void end(Results const&... results) {
     if (!is_kept()) return discard();
-    if constexpr (sizeof...(Results) > 0)
-      keep(snapshot_hash(results...));
-    else
-      keep({});
+    std::optional<std::uint64_t> result;
+    if constexpr (sizeof...(Results) > 0) {
+      std::array const saved{detail::saved_part(results)...};
+      result = hash_of_results(saved);
+    }
+    keep(result);
   }
 
   /// A reason to keep the cycle under way, or if there is none, the next one. From any thread.
@@ -90,7 +94,8 @@ class SnapshotRecorder {
   /// Waits until everything is written.
   void flush();
 
-  /// Numbers of snapshots written, dropped because too many waited, and not written because of the disk.
+  /// Numbers of snapshots written, dropped because too many waited, and not written because of the disk or of what a
+  /// part threw when it was saved.
   [[nodiscard]] std::size_t written() const;
   [[nodiscard]] std::size_t dropped() const;
   [[nodiscard]] std::size_t failed() const;
@@ -125,6 +130,7 @@ class SnapshotRecorder {
   void begin_parts(detail::SceneOfParts const& scene, std::span<detail::SavedPart const> parts);
   void note_time(double seconds);
   [[nodiscard]] bool is_kept();
+  [[nodiscard]] std::optional<std::uint64_t> hash_of_results(std::span<detail::SavedPart const> parts);
   void keep(std::optional<std::uint64_t> result);
   void discard();
 

@@ -94,6 +94,12 @@ struct SnapshotRecorder::State {
     bytes += size;
   }
 
+  void note_failure(std::string const& why) {
+    std::lock_guard const lock(mutex);
+    ++failed;
+    problem = why;
+  }
+
   void take(Waiting snapshot) {
     if (!options.in_background) return write(snapshot);
     {
@@ -134,9 +140,9 @@ struct SnapshotRecorder::State {
     } catch (std::exception const& error) {
       why = error.what();
     }
+    if (!why.empty()) return note_failure(why);
     std::lock_guard const lock(mutex);
-    ++(why.empty() ? written : failed);
-    if (!why.empty()) problem = why;
+    ++written;
   }
 
   void remove_oldest() {
@@ -160,7 +166,22 @@ CAMBIUM_COLD SnapshotRecorder::~SnapshotRecorder() = default;
 
 CAMBIUM_COLD void SnapshotRecorder::begin_parts(detail::SceneOfParts const& scene,
                                                 std::span<detail::SavedPart const> parts) {
-  state_->before = detail::archive_parts(state_->options.snapshot.format, scene, parts);
+  state_->before.reset();
+  try {
+    state_->before = detail::archive_parts(state_->options.snapshot.format, scene, parts);
+  } catch (std::exception const& error) {
+    state_->note_failure(error.what());
+  } catch (...) {
+    state_->note_failure("a part threw what is no std::exception when it was saved");
+  }
+}
+
+CAMBIUM_COLD std::optional<std::uint64_t> SnapshotRecorder::hash_of_results(std::span<detail::SavedPart const> parts) {
+  try {
+    return detail::hash_of_parts(parts);
+  } catch (...) {  // what was before is kept all the same
+    return std::nullopt;
+  }
 }
 
 CAMBIUM_COLD void SnapshotRecorder::trigger(std::string const& reason) {
@@ -180,6 +201,8 @@ CAMBIUM_COLD bool SnapshotRecorder::is_kept() {
       if (auto const reason = watch(); !reason.empty()) trigger(reason);
     } catch (std::exception const& error) {
       trigger(std::string("a watch failed: ") + error.what());
+    } catch (...) {
+      trigger("a watch failed");
     }
   }
   if (!state_->before) return false;  // there was no `begin`
@@ -188,6 +211,7 @@ CAMBIUM_COLD bool SnapshotRecorder::is_kept() {
 }
 
 CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) {
+  if (!state_->before) return;
   auto options = state_->options.snapshot;
   {
     std::lock_guard const lock(state_->mutex);

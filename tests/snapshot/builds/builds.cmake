@@ -9,7 +9,7 @@ function(add_snapshot_build name compiler)
   set(program ${builds_binary}/${name})
   add_custom_command(OUTPUT ${program}
     COMMAND ${compiler} @${compile_flags} ${CAMBIUM_WARNINGS} -Werror -DCAMBIUM_SOURCE_DIR="${PROJECT_SOURCE_DIR}" -MMD
-      -MT ${program} -MF ${program}.d ${ARGN} ${builds_source}/main.cpp -o ${program} -lboost_serialization -lpugixml
+      -MT ${program} -MF ${program}.d -ffp-contract=off ${ARGN} ${builds_source}/main.cpp -o ${program} -lboost_serialization -lpugixml
       -pthread
     DEPENDS ${builds_source}/main.cpp ${compile_flags} DEPFILE ${program}.d COMMENT "snapshot build: ${name}" VERBATIM)
   add_custom_target(snapshot_build_${name} DEPENDS ${program})
@@ -32,22 +32,27 @@ if(TARGET cambium::snapshot AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NO
     FIXTURES_REQUIRED snapshot_build_release FIXTURES_SETUP snapshot_recorded)
 
   add_thaw_test(debug ${CMAKE_CXX_COMPILER} -O0 -g)
+  set(clang ${CAMBIUM_CHECK_clang++-14})
   if(CAMBIUM_CHECK_clang++-19)
-    add_thaw_test(clang ${CAMBIUM_CHECK_clang++-19} -O2)
+    set(clang ${CAMBIUM_CHECK_clang++-19})
+  endif()
+  if(clang)
+    add_thaw_test(clang ${clang} -O2)
     # Contracted multiplications give other bits. The test says how far the cycles are then apart, and fails only where a
     # file cannot be restored.
     if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND EXISTS /proc/cpuinfo)
       file(STRINGS /proc/cpuinfo cpu_flags REGEX "^flags.* fma " LIMIT_COUNT 1)
       if(cpu_flags)
-        add_thaw_test(contracted ${CAMBIUM_CHECK_clang++-19} -O1 -mfma -ffp-contract=fast)
+        add_thaw_test(contracted ${clang} -O1 -mfma -ffp-contract=fast)
         set_tests_properties(snapshot.builds.contracted PROPERTIES
           PASS_REGULAR_EXPRESSION "of 180 cycles came out bit-equal")
       endif()
     endif()
   endif()
-  if(CAMBIUM_FUZZ_COMPILER)  # a clang with sanitizers; g++ takes ten times as long to compile with these
-    add_thaw_test(sanitizers ${CAMBIUM_FUZZ_COMPILER} -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all)
-    # 100 000 damaged files, of which every 20th has a right checksum again, so that the archive is read.
+  if(CAMBIUM_FUZZING_CLANG)  # a clang with sanitizers; g++ takes ten times as long to compile with these
+    add_thaw_test(sanitizers ${CAMBIUM_FUZZING_CLANG} -O1 -g1 
+      -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
+    # 100 000 damaged files, of which every fourth has a right checksum again, so that the archive is read.
     add_test(NAME snapshot.builds.mutants COMMAND ${builds_binary}/sanitizers mutate ${builds_binary}/recorded 100000)
     set_tests_properties(snapshot.builds.mutants PROPERTIES
       FIXTURES_REQUIRED "snapshot_recorded;snapshot_build_sanitizers")

@@ -175,7 +175,7 @@ int mutate(fs::path const& folder, int count) {
     for (auto const& file : files_in(folder / name)) all.push_back(cb::read_snapshot_file(file));
     cb::RandomStream random(3, 0, 0);
     for (int i = 0; i < count / 3; ++i) {
-      bool const is_sealed = i % 20 == 0;
+      bool const is_sealed = i % 4 == 0;
       auto bytes = all[random() % all.size()];
       auto const from = is_sealed ? bytes.find("\n\n") + 2 : 0;
       for (auto k = 1 + random() % 3; k > 0; --k) damage(bytes, from, random, all[random() % all.size()]);

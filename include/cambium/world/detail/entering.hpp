@@ -119,7 +119,7 @@ template <class World>
   check_if_described(spec.behavior.given(), where);
   check_if_described(spec.execution, where);
   check_if_described(spec.dynamics, where);
-  check_observer(spec.observer, where);
+  check_if_described(spec.observer, where);
   auto const [road, lane, place] = entrance(map, roster, entering, where);
   if (is_too_large(map, spec.behavior.given(), spec.shape, *road)) refuse_too_large(where);
   check_acceleration(spec.acceleration, where);
