@@ -183,7 +183,8 @@ int debug(Settings const& settings) {
                                        : "It came out otherwise than recorded.");
   } else {
     auto const as_recorded = types.thaw(map, bytes, settings.file);
-    print_ego("without the edit", duration, as_recorded->run(), as_recorded->ego());
+    auto const unedited = as_recorded->run();
+    print_ego("without the edit", duration, unedited, as_recorded->ego());
   }
   double const end = settings.goes_on ? thawed->time() + 60.0 : 0.0;
   bool collides = thawed->ego_collides();

@@ -4,7 +4,7 @@
 
 void examples::read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
                          std::string const& json) {
-  cb::detail::read_json_text(name, object, usual, transfer, json, "--edit", nullptr);
+  cb::detail::read_json_text(name, object, usual, transfer, json, "the ego", nullptr);
 }
 
 std::string examples::difference(void* object, void const* usual, cb::detail::TransferStruct transfer) {

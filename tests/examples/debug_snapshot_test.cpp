@@ -49,6 +49,8 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   auto const mended = debug.run({files[0], "--edit", "behavior.mended=1"});
   CHECK(mended.code == 1);
   CHECK(has(mended.out, "-3.121 m/s^2"));
+  CHECK(
+      has(mended.out, "without the edit of 0.200 s: no problem; agent 0 at (31.053, -5.250), 8.266 m/s, -2.721 m/s^2"));
   auto const on = debug.run({files[0], "--into-simulation"});
   CHECK(on.code == 0);
   CHECK(has(on.out, "no collision"));
