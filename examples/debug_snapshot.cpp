@@ -131,14 +131,14 @@ void print_test(std::string const& file, std::string const& map_file, std::strin
       "\n// Needs the examples' sources, with these headers, and the snapshot.\n"
       "#include <cambium/map/opendrive.hpp>\n#include \"benchmark/traffic.hpp\"\n#include "
       "\"common/desk.hpp\"\n#include \"common/map_file.hpp\"\n\n"
-      "TEST_CASE(\"the cycle of %s comes out as recorded\") {\n"
+      "TEST_CASE(%s) {\n"
       "  examples::ParameterFile usual;\n"
       "  std::string const file = %s, bytes = cambium::read_snapshot_file(file);\n"
       "  auto const thawed = %s(\n      %s, bytes, file);\n"
       "  static_cast<void>(thawed->run());\n"
       "  CHECK(thawed->hash() == 0x%016llxu);\n}\n",
-      fs::path(file).filename().string().c_str(), cb::detail::json_string(file).c_str(), call.c_str(), map.c_str(),
-      static_cast<unsigned long long>(result));
+      cb::detail::json_string("the cycle of " + fs::path(file).filename().string() + " comes out as recorded").c_str(),
+      cb::detail::json_string(file).c_str(), call.c_str(), map.c_str(), static_cast<unsigned long long>(result));
 }
 
 /// How the ego comes out of a cycle.
@@ -183,14 +183,24 @@ int debug(Settings const& settings) {
                                        : "It came out otherwise than recorded.");
   } else {
     auto const as_recorded = types.thaw(map, bytes, settings.file);
-    auto const unedited = as_recorded->run();
-    print_ego("without the edit", duration, unedited, as_recorded->ego());
+    try {
+      auto const unedited = as_recorded->run();
+      print_ego("without the edit", duration, unedited, as_recorded->ego());
+    } catch (std::exception const& error) {
+      std::printf("without the edit it threw an exception: %s\n", error.what());
+    }
+    if (is_equal) std::printf("The edit changes nothing: it came out bit-equal to what was recorded.\n");
   }
   double const end = settings.goes_on ? thawed->time() + 60.0 : 0.0;
   bool collides = thawed->ego_collides();
   for (std::uint64_t i = 1; (i < settings.cycles || thawed->time() < end) && thawed->ego_drives(); ++i) {
-    if (auto const next = thawed->run(); !next) {
-      std::printf("%.1f s: %s\n", thawed->time(), to_string(next.problem));
+    try {
+      if (auto const next = thawed->run(); !next) {
+        std::printf("%.1f s: %s\n", thawed->time(), to_string(next.problem));
+        break;
+      }
+    } catch (std::exception const& error) {
+      std::printf("%.1f s: threw an exception: %s\n", thawed->time(), error.what());
       break;
     }
     collides = collides || thawed->ego_collides();

@@ -216,6 +216,26 @@ TEST_CASE("a part that cannot be saved is counted, and the cycle runs") {
   CHECK(info.note.find("a watch failed") != std::string::npos);
 }
 
+TEST_CASE("reasons to keep a cycle that could not be saved are none for the next one") {
+  auto const where = folder("lost");
+  SnapshotRecorder recorder({.folder = where});
+  Moody moody{.throws = true};
+  recorder.run(
+      [&] {
+        recorder.trigger("of the first");
+        moody.throws = false;
+      },
+      moody);
+  recorder.run([] {}, moody);
+  CHECK(recorder.failed() == 1);
+  CHECK(recorder.written() == 0);
+  moody.throws = true;
+  CHECK_THROWS(recorder.run([] { throw std::runtime_error("boom"); }, moody));
+  moody.throws = false;
+  recorder.run([] {}, moody);
+  CHECK(recorder.written() == 0);
+}
+
 TEST_CASE("a log of another thread may trigger") {
   auto const where = folder("threads");
   SnapshotRecorder recorder({.folder = where, .in_background = true});

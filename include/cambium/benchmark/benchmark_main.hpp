@@ -280,9 +280,7 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
     std::cout << "  " << *replay << " plays it in a browser\n";
     if (!run.problem.empty()) std::cout << "  there is no snapshot beside it: " << run.problem << "\n";
     auto const snapshot = std::filesystem::path(*replay).replace_extension(".snapshot");
-    std::error_code none_there;
-    if (snapshot != *replay) std::filesystem::remove(snapshot, none_there);  // of an earlier run
-    if (!run.snapshot.empty()) {
+    if (!run.snapshot.empty() && snapshot != *replay) {
       write_file(snapshot, run.snapshot);
       std::cout << "  " << snapshot.string() << " is its state before the end\n";
     }

@@ -100,9 +100,12 @@ template <class World>
     bool const wanted =
         options.replays == Replays::failures && !run.result.success && (*replays)[c]++ < options.most_replays;
     if (wanted) run = contenders[c].run(scenario, how, true);  // it is cheaper to run a failure again than to film all
+    if (wanted && run.result.success) {                        // its time to plan has run out only once, say
+      outcome.problem = "run again for its replay, a failure was a success";
+      return outcome;
+    }
     outcome.snapshot = std::move(run.snapshot);
     outcome.problem = std::move(run.problem);
-    if (wanted && run.result.success) outcome.problem = "run again for its replay, a failure was a success";
     if (!run.recording) return outcome;
     try {
       outcome.replay = html_replay(titled(std::move(*run.recording), set.title, i, contenders[c].name, run.result));

@@ -40,6 +40,7 @@ struct SnapshotRecorder::State {
 
   SnapshotRecorderOptions options;
   std::optional<detail::ArchivedParts> before{};  ///< of the cycle under way
+  bool is_lost = false;                           ///< the cycle under way could not be saved
   std::uint64_t number = 0;                       ///< of the last file
   std::filesystem::path last_file{};
   std::deque<File> files{};  ///< oldest first; of the thread that writes
@@ -92,6 +93,13 @@ struct SnapshotRecorder::State {
     if (refused) return;
     files.push_back({path, std::strtoull(name.c_str(), nullptr, 10), size, written_at});
     bytes += size;
+  }
+
+  /// The reasons to keep a cycle that could not be saved are none for the next one.
+  void forget_lost() {
+    std::lock_guard const lock(mutex);
+    if (is_lost) reasons.clear();
+    is_lost = false;
   }
 
   void note_failure(std::string const& why) {
@@ -167,8 +175,10 @@ CAMBIUM_COLD SnapshotRecorder::~SnapshotRecorder() = default;
 CAMBIUM_COLD void SnapshotRecorder::begin_parts(detail::SceneOfParts const& scene,
                                                 std::span<detail::SavedPart const> parts) {
   state_->before.reset();
+  state_->is_lost = true;
   try {
     state_->before = detail::archive_parts(state_->options.snapshot.format, scene, parts);
+    state_->is_lost = false;
   } catch (std::exception const& error) {
     state_->note_failure(error.what());
   } catch (...) {
@@ -205,13 +215,16 @@ CAMBIUM_COLD bool SnapshotRecorder::is_kept() {
       trigger("a watch failed");
     }
   }
-  if (!state_->before) return false;  // there was no `begin`
+  if (!state_->before) {  // there was no `begin`, or it failed
+    state_->forget_lost();
+    return false;
+  }
   std::lock_guard const lock(state_->mutex);
   return state_->options.each_cycle || !state_->reasons.empty();
 }
 
 CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) {
-  if (!state_->before) return;
+  if (!state_->before) return state_->forget_lost();
   auto options = state_->options.snapshot;
   {
     std::lock_guard const lock(state_->mutex);

@@ -50,7 +50,7 @@ if(TARGET cambium::snapshot AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NO
     endif()
   endif()
   if(CAMBIUM_FUZZING_CLANG)  # a clang with sanitizers; g++ takes ten times as long to compile with these
-    add_thaw_test(sanitizers ${CAMBIUM_FUZZING_CLANG} -O1 -g1 
+    add_thaw_test(sanitizers ${CAMBIUM_FUZZING_CLANG} -O1 -g1
       -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
     # 100 000 damaged files, of which every fourth has a right checksum again, so that the archive is read.
     add_test(NAME snapshot.builds.mutants COMMAND ${builds_binary}/sanitizers mutate ${builds_binary}/recorded 100000)
