@@ -136,15 +136,21 @@ TEST_CASE("failed runs leave replays that the report links, and a command that r
   std::vector<std::string> const words{"--set", "exit", "--behaviors", "idm", "--scenarios", "3", "--db", file("r.db")};
   REQUIRE(program.run(words).code == 0);
   std::vector<std::string> replays;
-  for (auto const& entry : std::filesystem::directory_iterator(folder.path() / "r_replays"))
-    replays.push_back(entry.path().filename().string());
+  std::size_t snapshots = 0;
+  for (auto const& entry : std::filesystem::directory_iterator(folder.path() / "r_replays")) {
+    auto const name = entry.path().filename().string();
+    if (name.ends_with(".html")) replays.push_back(name);
+    snapshots += name.ends_with(".snapshot");
+  }
   std::sort(replays.begin(), replays.end());
   REQUIRE(replays.size() == 3);
+  CHECK(snapshots == 3);
   CHECK(replays.front().find("exit_idm_") == 0);
   CHECK(content_of(file(("r_replays/" + replays.front()).c_str())).find("exit, scenario 0, idm") != std::string::npos);
   REQUIRE(report.run({"--db", file("r.db"), "--html", file("r.html")}).code == 0);
   auto const page = content_of(file("r.html"));
   CHECK(page.find("\"made\":[0,1,2]") != std::string::npos);
+  CHECK(page.find("\"frozen\":[0,1,2]") != std::string::npos);
   CHECK(page.find("\"source\":\"--set examples/exit --scenarios 3\"") != std::string::npos);
   auto const again = program.run({"--set", "examples/exit", "--scenarios", "3", "--only", "exit:2:idm"});
   CHECK(again.code == 0);
