@@ -32,7 +32,7 @@ class Thawed {
   virtual ~Thawed() = default;
   [[nodiscard]] virtual std::vector<ThawedAgent> agents() const = 0;
   [[nodiscard]] virtual ThawedAgent ego() const = 0;
-  /// The ego's behaviour and what it remembers, as JSON without what is usual.
+  /// The ego's behaviour and what it remembers, as JSON without the defaults.
   [[nodiscard]] virtual std::string behavior() const = 0;
   [[nodiscard]] virtual std::string memory() const = 0;
   [[nodiscard]] virtual double time() const = 0;
@@ -49,14 +49,14 @@ class Thawed {
   [[nodiscard]] virtual cb::Recording& recording() = 0;
 };
 
-/// Reads JSON into a described struct. Throws `ParameterError` at "--edit".
+/// Reads JSON into a described struct. Throws `ParameterError` at "the ego".
 void read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
                std::string const& json);
 
 /// Throws `ParameterError` at `where` unless the text is one value.
 void require_json(std::string const& text, std::string const& where);
 
-/// A described struct as JSON, without what is usual.
+/// A described struct as JSON without its defaults.
 [[nodiscard]] std::string difference(void* object, void const* usual, cb::detail::TransferStruct transfer);
 
 /// Restores a snapshot on its map.
@@ -108,7 +108,7 @@ class ThawedWorld final : public Thawed {
       Model const usual{};
       Model edited = model;
       read_edit(cb::detail::struct_name<Model>(), &edited, &usual, &cb::detail::transfer_any<Model>, json);
-      cb::check_parameters(edited, "--edit");
+      cb::check_parameters(edited, "the ego");
       model = std::move(edited);
     };
     if (is_memory) {

@@ -11,9 +11,8 @@
 namespace cambium::map {
 
 /// Hash of what traffic knows of a map: lanes, their paths, widths, links, limits, signals and conflicts' rules; not of
-/// the file's text. Numbers count by the thousandth, so equal files almost always give equal hashes whatever the compiler's
-/// flags and the mathematical library.
-/// O(path segments) at first, then O(1).
+/// the file's text. Numbers count by the thousandth, so equal files almost always give equal hashes, whatever the
+/// compiler's flags and the mathematical library. O(path segments) at first, then O(1).
 [[nodiscard]] inline std::uint64_t content_hash(Map const& map) {
   if (auto const known = map.known_content_hash().load(std::memory_order_relaxed); known != 0) return known;
   std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
