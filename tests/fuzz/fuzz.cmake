@@ -25,8 +25,7 @@ if(NOT DEFINED CAMBIUM_FUZZING_CLANG)  # the first that has its libraries
   set(CAMBIUM_FUZZING_CLANG "${found}" CACHE INTERNAL "a clang that makes programs that fuzz; empty: there is none")
 endif()
 
-# Not with clang 14, whose sequence finds a document that is not read as it was written: to be mended.
-if(CAMBIUM_FUZZING_CLANG MATCHES "clang\\+\\+-19$" AND CAMBIUM_FUZZ_PUGIXML)
+if(CAMBIUM_FUZZING_CLANG AND CAMBIUM_FUZZ_PUGIXML)
   set(fuzzer ${CMAKE_CURRENT_BINARY_DIR}/fuzz/opendrive_fuzz)
   file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found)  # what is new goes there
   # Another compiler than the project's, perhaps: so a command instead of a target of the project's own.
@@ -43,6 +42,6 @@ if(CAMBIUM_FUZZING_CLANG MATCHES "clang\\+\\+-19$" AND CAMBIUM_FUZZ_PUGIXML)
       -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/fuzz/ ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found ${fuzz_source}/seeds)
   set_tests_properties(fuzz.opendrive PROPERTIES FIXTURES_REQUIRED opendrive_fuzz)
 else()
-  add_test(NAME fuzz.opendrive COMMAND ${CMAKE_COMMAND} -E echo "skipped: no clang 19 with libFuzzer and sanitizers here")
+  add_test(NAME fuzz.opendrive COMMAND ${CMAKE_COMMAND} -E echo "skipped: no clang with libFuzzer and sanitizers here")
   set_tests_properties(fuzz.opendrive PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
 endif()

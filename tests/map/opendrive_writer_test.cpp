@@ -296,6 +296,15 @@ TEST_CASE("the remains of a damaged file are read again as they were written") {
   CHECK(readable > 900);
 }
 
+TEST_CASE("elements that OpenDRIVE does not know are kept, wherever they stand") {
+  auto text = corpus::read(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "lane_drop.xodr");
+  std::string_view const begin = "<planView>";
+  text.insert(text.find(begin), R"(<own a="1"/><objects><object id="a" s="1" t="2"/></objects><own a="2"/>)");
+  auto const document = read(text);
+  REQUIRE(document.roads[0].rest.elements.size() >= 3);
+  CHECK(read(write_opendrive(document)) == document);
+}
+
 TEST_CASE("records that are left out leave none behind that would be, were the file read again") {
   // Each is within bounds up to the next one, which is not; without that it holds farther.
   auto text = road_with("<line/>", "");

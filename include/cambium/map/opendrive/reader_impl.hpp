@@ -154,9 +154,11 @@ inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendriv
   read_signals(context, node, road);
   constexpr std::string_view known[] = {"link",           "type",  "planView", "elevationProfile",
                                         "lateralProfile", "lanes", "signals"};
-  for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
-    if (std::find(std::begin(known), std::end(known), name) == std::end(known)) keep_element(context, child, road.rest);
-  });
+  for (bool const objects : {true, false})  // the order in which they are written
+    for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
+      if ((name == "objects") == objects && std::find(std::begin(known), std::end(known), name) == std::end(known))
+        keep_element(context, child, road.rest);
+    });
   return true;
 }
 
