@@ -46,6 +46,12 @@ std::map<cb::AgentId, cb::State> seen_by(World& world, cb::AgentId id) {
   return seen;
 }
 
+/// A stage that does not describe its parameters.
+struct Undescribed {
+  static constexpr bool perfect = false;
+  cb::State observe(cb::State const& truth, bool, cb::RandomStream const&) const { return truth; }
+};
+
 }  // namespace
 
 TEST_CASE("worlds that need no past keep none") {
@@ -156,6 +162,18 @@ TEST_CASE("a chain's parameters have keys by the place of their stage, and are c
   CHECK_THROWS_WITH_AS(
       world.add({.position = {100, -1.75}, .observer = Everything{{}, cb::OccludedObserver{.range = -1.0}, {}}}),
       doctest::Contains("second.range"), cb::ParameterError);
+}
+
+TEST_CASE("a chain may have a stage without a description; the others are still checked") {
+  using Mixed = cb::ObserverChain<Undescribed, cb::OccludedObserver>;
+  static_assert(!cb::Described<Mixed> && cb::Described<Everything>);
+  World<Mixed> world(straight_road(2, 1000.0));
+  auto const ego = world.add({.position = {100, -1.75}, .observer = Mixed{{}, cb::OccludedObserver{.range = 50.0}}});
+  world.add({.position = {300, -1.75}});
+  CHECK(seen_by(world, ego).empty());
+  CHECK_THROWS_WITH_AS(
+      world.add({.position = {500, -1.75}, .observer = Mixed{{}, cb::OccludedObserver{.range = -1.0}}}),
+      doctest::Contains("range"), cb::ParameterError);
 }
 
 TEST_CASE("agents of one world perceive by observers of their own kinds") {

@@ -27,7 +27,8 @@ struct ObserverStages<std::index_sequence<i...>, Observers...> : ObserverStage<i
   static constexpr char const* keys[] = {"first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"};
   static_assert(sizeof...(Observers) <= std::size(keys), "cambium::ObserverChain: takes at most eight observers");
 
-  static constexpr auto parameters() {
+  static constexpr bool are_described = (Described<Observers> && ...);
+  static constexpr auto parameters() requires are_described {
     return parameter_list(parameter(keys[i], &ObserverStage<i, Observers>::observer, "-", {},
                                     "a stage, by its place in the sequence")...);
   }
