@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdint>
 
+#include "cambium/core/described.hpp"
+
 namespace cambium {
 
 using PhiloxCounter = std::array<std::uint32_t, 4>;
@@ -71,6 +73,17 @@ class RandomStream {
     spare_ = std::uint64_t{bits[3]} << 32 | bits[2];
     has_spare_ = true;
     return std::uint64_t{bits[1]} << 32 | bits[0];
+  }
+
+  static constexpr char const* name = "random_stream";
+  /// For snapshots: a restored stream goes on where it was.
+  static constexpr auto parameters() {
+    using P = RandomStream;
+    constexpr Range whole{0, 4294967295.0};
+    return parameter_list(parameter("counter", &P::counter_, "-", whole, "of the next bits"),
+                          parameter("key", &P::key_, "-", whole, "halves of the seed"),
+                          parameter("spare", &P::spare_, "-", Range{0, 1.9e19}, "drawn, but not given yet"),
+                          parameter("has_spare", &P::has_spare_, "-", Range{0, 1}, "whether there is such"));
   }
 
  private:

@@ -99,7 +99,8 @@ void check_sources(Map const& map, std::vector<TrafficSource> const& sources);
 ///   source  [##] ---> | gap >= minimum_gap + headway v | [##] ---> ... ---> sink: the end of the route
 ///
 /// Between two steps of the world call `enter`, which asks for the next agent, and `leave`. An agent without room
-/// waits, and so do the agents behind it. The same seed lets the same agents enter at the same times.
+/// waits, and so do the agents behind it. The same seed lets the same agents enter at the same times. It is described,
+/// so a snapshot can hold who waits, and what is drawn next; it is restored into one with the same sources.
 template <class WorldType>
 class TrafficInflow {
  public:
@@ -124,13 +125,14 @@ class TrafficInflow {
     check_parameters(rules_);
     detail::check_sources(map, sources_);
     for (std::size_t i = 0; i < sources_.size(); ++i)
-      queues_[i].random = RandomStream(seed, static_cast<std::uint32_t>(i), 0, purpose);
+      queues_[i] = {sources_[i].lane, sources_[i].per_hour,
+                    RandomStream(seed, static_cast<std::uint32_t>(i), 0, purpose)};
   }
 
   [[nodiscard]] std::vector<TrafficSource> const& sources() const { return sources_; }
 
   /// Number of agents that have arrived at a source and wait for room. At a saturated source at most 1.
-  [[nodiscard]] std::size_t waiting(std::size_t source) const { return queues_[source].waiting; }
+  [[nodiscard]] std::uint64_t waiting(std::size_t source) const { return queues_[source].waiting; }
 
   /// Lets at most one agent enter at each source. `draw(source, random)` returns the `AgentSpec` of the next one: its
   /// shape, behaviour and route, and the speed at which it likes to enter; place and heading are set here. Returns who
@@ -166,15 +168,45 @@ class TrafficInflow {
     return left_;
   }
 
+  static constexpr char const* name = "inflow";
+  static constexpr auto parameters() {
+    using P = TrafficInflow;
+    return parameter_list(parameter("rules", &P::rules_, "-", {}, "how agents enter"),
+                          parameter("queues", &P::queues_, "-", {}, "at the sources"));
+  }
+
+  /// Throws `ParameterError` if the queues are those of other sources.
+  void check(std::string const& where) const {
+    auto const is_of = [](Queue const& queue, TrafficSource const& source) {
+      return queue.lane == source.lane && queue.per_hour == source.per_hour;
+    };
+    if (!std::equal(queues_.begin(), queues_.end(), sources_.begin(), sources_.end(), is_of))
+      throw ParameterError(where, "the inflow was saved with other sources",
+                           "restore it into one with the same lanes and demands, in the same order");
+  }
+
  private:
   static constexpr std::uint32_t purpose = 0x696e666c;
   static constexpr double behind_begin = 0.5;  ///< of a lane: where the rear ends of those that enter are [m]
 
   struct Queue {
+    LaneId lane = none<LaneId>;  ///< of its source, as is `per_hour`
+    double per_hour = TrafficSource::saturated;
     RandomStream random{0, 0, 0};
     double arrival = -1.0;  ///< of the next agent [s]; negative: not drawn yet
-    std::size_t waiting = 0;
+    std::uint64_t waiting = 0;
     std::optional<AgentSpec> next{};  ///< the first that waits
+
+    static constexpr char const* name = "queue";
+    static constexpr auto parameters() {
+      using P = Queue;
+      return parameter_list(parameter("lane", &P::lane, "-", {}, "of its source"),
+                            parameter("per_hour", &P::per_hour, "1/h", positive, "demand; inf: saturated"),
+                            parameter("random", &P::random, "-", {}, "for arrivals and agents"),
+                            parameter("arrival", &P::arrival, "s", any_finite, "of the next agent"),
+                            parameter("waiting", &P::waiting, "-", Range{0, 1e9}, "agents without room"),
+                            parameter("next", &P::next, "-", {}, "the first of them"));
+    }
   };
 
   static void arrive(Queue& queue, double per_hour, double time) {

@@ -425,8 +425,8 @@ class FieldReader {
     for_each_parameter<T>([&](auto const& p) {
       if (i < known.fields && (differs[i / 8] >> i % 8 & 1u) != 0)
         read(p.name, object.*p.field, p, like != nullptr ? &(like->*p.field) : nullptr);
-      else if (i >= known.fields)
-        object.*p.field = T{}.*p.field;
+      else if constexpr (std::is_default_constructible_v<T>)
+        if (i >= known.fields) object.*p.field = T{}.*p.field;
       ++i;
     });
     is_old_ = is_old_ || known.version < version_of<T>();

@@ -84,7 +84,7 @@ struct AgentSpecOf {
   detail::Given<std::optional<AgentId>, detail::SpecPart::id> id{};  ///< default: the next free id
 
   static constexpr char const* name = "agent";
-  /// What a file holds of it: all but `road` and `acceleration`.
+  /// What a file holds of it: all but `road`.
   static constexpr auto parameters() {
     using P = AgentSpecOf;
     auto const own = parameter_list(
@@ -92,6 +92,7 @@ struct AgentSpecOf {
         parameter("position", &P::position, "m", any_finite, "of the reference point"),
         parameter("heading", &P::heading, "rad", any_finite, "counter-clockwise from +x; absent: along the lane"),
         parameter("speed", &P::speed, "m/s", Range{-0.1, 1000}, "along the heading"),
+        parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "as measured"),
         parameter("shape", &P::shape, "-", {}, "default: a car"),
         parameter("behavior", &P::behavior, "-", {}, "one of the world's behaviors"),
         parameter("goal", &P::goal, "-", {}, "absent: none"),
