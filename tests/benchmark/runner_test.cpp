@@ -1,8 +1,6 @@
 #include <cambium/cambium.hpp>
 #include <cambium/benchmark/run_on_processes.hpp>
 #include <cambium/benchmark/runner.hpp>
-#include <cambium/map/opendrive.hpp>
-#include <cambium/scenario/merging_site.hpp>
 #include <cambium/core/write_file.hpp>
 #include <doctest/doctest.h>
 
@@ -22,23 +20,13 @@
 #include <vector>
 
 #include "../examples/program.hpp"
+#include "../support/merging_set.hpp"
 
 using namespace cambium;
 
 namespace {
 
 using Traffic = World<BehaviorSet<IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
-
-ScenarioSet<Traffic> merging_set(std::uint32_t count) {
-  static auto const site = find_merging_site(load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map);
-  ScenarioSet<Traffic> set{.title = "merging"};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    set.scenarios.push_back(with_behaviors<Traffic>(
-        site.sample(4, i), [](auto const& spec) -> Traffic::Behavior { return std::get<IdmClassic>(spec.behavior); }));
-    set.scenarios.back().map_file = "merging.xodr";
-  }
-  return set;
-}
 
 /// Throws in every plan.
 struct Throws {
@@ -166,7 +154,7 @@ std::string results_of(ResultStore& store) {
 
 TEST_CASE("results do not depend on threads, shards or interruptions") {
   Folder folder;
-  auto const set = merging_set(12);
+  auto const set = support::merging_set<Traffic>(12);
   ResultStore one(folder.path / "one.db"), four(folder.path / "four.db"), first(folder.path / "first.db"),
       second(folder.path / "second.db");
   CHECK(run_benchmark(set, contenders(), one, {.executor = on_threads(1)}) == 60);
@@ -191,7 +179,7 @@ TEST_CASE("results do not depend on threads, shards or interruptions") {
 
 TEST_CASE("in processes, a behaviour that crashes or never returns costs its own runs only") {
   Folder folder;
-  auto set = merging_set(6);
+  auto set = support::merging_set<Traffic>(6);
   set.time_limit = 0.4;  // which also bounds the time of a job
   for (std::size_t i = 0; i < set.scenarios.size(); ++i) set.scenarios[i].seed = i + 1;
   auto const choose = [](auto const&, auto const& scenario) { return Hostile{.seed = scenario.seed}; };
@@ -221,7 +209,7 @@ TEST_CASE("in processes, a behaviour that crashes or never returns costs its own
 
 TEST_CASE("results of a process that has read other scenarios are refused") {
   Folder folder;
-  auto const set = merging_set(2), other = merging_set(1);
+  auto const set = support::merging_set<Traffic>(2), other = support::merging_set<Traffic>(1);
   ResultStore store(folder.path / "r.db");
   auto const all = contenders();
   BenchmarkOptions const options;
@@ -236,7 +224,7 @@ TEST_CASE("results of a process that has read other scenarios are refused") {
 
 TEST_CASE("a run that throws or fails is a result") {
   Folder folder;
-  auto set = merging_set(2);
+  auto set = support::merging_set<Traffic>(2);
   set.scenarios[1].ego = AgentId{999};
   ResultStore store(folder.path / "r.db");
   CHECK(run_benchmark(set, contenders(), store) == 10);
@@ -256,7 +244,7 @@ TEST_CASE("a run that throws or fails is a result") {
 }
 
 TEST_CASE("a result is what an own loop finds") {
-  auto const set = merging_set(6);
+  auto const set = support::merging_set<Traffic>(6);
   auto const idm = contender<Traffic>(IdmClassic{.desired_speed = 22.0});
   for (auto const& scenario : set.scenarios) {
     auto const run = idm.run(scenario, {}, true);
@@ -277,7 +265,7 @@ TEST_CASE("a result is what an own loop finds") {
 }
 
 TEST_CASE("who leaves the map before its goal has left its way") {
-  auto set = merging_set(1);
+  auto set = support::merging_set<Traffic>(1);
   auto& scenario = set.scenarios.front();
   auto const ego = std::ranges::find(scenario.agents, scenario.ego, [](auto const& spec) { return *spec.id; });
   auto const other = std::ranges::find_if(
@@ -304,8 +292,8 @@ TEST_CASE("a store refuses what it cannot use") {
   ResultStore store(folder.path / "good.db");
   auto twice = contenders();
   twice.push_back(twice[0]);
-  CHECK_THROWS_AS(run_benchmark(merging_set(1), twice, store), ParameterError);
-  auto still = merging_set(1);
+  CHECK_THROWS_AS(run_benchmark(support::merging_set<Traffic>(1), twice, store), ParameterError);
+  auto still = support::merging_set<Traffic>(1);
   still.time_step = 0.0;
   CHECK_THROWS_AS(run_benchmark(still, contenders(), store), ParameterError);
 }
@@ -327,7 +315,7 @@ TEST_CASE("a database of another program stays as it is") {
 
 TEST_CASE("a database that may only be read is read") {
   Folder folder;
-  auto const set = merging_set(2);
+  auto const set = support::merging_set<Traffic>(2);
   auto const file = folder.path / "a #100%?.db";
   std::string expected;
   {
@@ -355,7 +343,7 @@ TEST_CASE("a database that may only be read is read") {
 
 TEST_CASE("the replay of a failure goes when it is a failure no more") {
   Folder folder;
-  auto const set = merging_set(1);
+  auto const set = support::merging_set<Traffic>(1);
   bool throws = true;
   auto const choose = [&](auto const&, auto const&) { return Moody{throws}; };
   ResultStore store(folder.path / "r.db");
@@ -372,7 +360,7 @@ TEST_CASE("the replay of a failure goes when it is a failure no more") {
 
 TEST_CASE("failures leave replays, up to a number of each contender") {
   Folder folder;
-  auto const set = merging_set(4);
+  auto const set = support::merging_set<Traffic>(4);
   ResultStore store(folder.path / "r.db");
   BenchmarkOptions options{.executor = on_threads(2),
                            .replays = Replays::failures,
@@ -414,7 +402,7 @@ TEST_CASE("replays that cannot be written are reported once, and the results are
   write_file(folder.path / "replays", "a file in the way");
   std::vector<std::string> warnings;
   ResultStore store(folder.path / "r.db");
-  run_benchmark(merging_set(3), contenders(), store,
+  run_benchmark(support::merging_set<Traffic>(3), contenders(), store,
                 {.replays = Replays::all, .replay_folder = folder.path / "replays", .warn = [&](auto const& sentence) {
                    warnings.push_back(sentence);
                  }});
@@ -425,7 +413,7 @@ TEST_CASE("replays that cannot be written are reported once, and the results are
 }
 
 TEST_CASE("a run whose plans take too long together ends with an error") {
-  auto const set = merging_set(1);
+  auto const set = support::merging_set<Traffic>(1);
   auto const idm = contender<Traffic>(IdmClassic{.desired_speed = 22.0});
   auto const slow = idm.run(set.scenarios[0], {.plan_limit = 1e-12}, false);
   CHECK(slow.result.steps == 1);
@@ -443,7 +431,7 @@ TEST_CASE("a run whose plans take too long together ends with an error") {
 
 TEST_CASE("an error names the agent that failed, and a failure of others is only counted") {
   using Mixed = World<BehaviorSet<IdmClassic, GivesUp>, InterpolateExecution, SingleTrack>;
-  auto const plain = merging_set(1).scenarios[0];
+  auto const plain = support::merging_set<Traffic>(1).scenarios[0];
   REQUIRE(plain.agents.size() >= 3);
   std::vector<AgentId> others;
   for (auto const& spec : plain.agents)
@@ -470,7 +458,7 @@ TEST_CASE("an error names the agent that failed, and a failure of others is only
 
 TEST_CASE("agents see what their observers let them see, and a lonely ego has no gap") {
   using Noisy = World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack, ParametricObserver>;
-  auto scenario = with_behaviors<Noisy>(merging_set(1).scenarios[0], [](auto const& spec) -> Noisy::Behavior {
+  auto scenario = with_behaviors<Noisy>(support::merging_set<Traffic>(1).scenarios[0], [](auto const& spec) -> Noisy::Behavior {
     return std::get<IdmClassic>(spec.behavior.given());
   });
   auto const idm = contender<Noisy>(IdmClassic{.desired_speed = 22.0});
@@ -488,13 +476,13 @@ TEST_CASE("agents see what their observers let them see, and a lonely ego has no
 }
 
 TEST_CASE("what a behaviour throws is an error, whatever it is") {
-  auto const run = contender<Traffic>(ThrowsNumber{}).run(merging_set(1).scenarios[0], {}, false);
+  auto const run = contender<Traffic>(ThrowsNumber{}).run(support::merging_set<Traffic>(1).scenarios[0], {}, false);
   CHECK(run.result.error == "threw what is no std::exception");
 }
 
 TEST_CASE("a store that cannot be read says so, and merges all of another or nothing") {
   Folder folder;
-  auto const set = merging_set(2);
+  auto const set = support::merging_set<Traffic>(2);
   ResultStore first(folder.path / "first.db"), second(folder.path / "second.db");
   run_benchmark(set, contenders(), first, {.shard = 0, .shards = 2});
   run_benchmark(set, contenders(), second, {.shard = 1, .shards = 2});
@@ -508,7 +496,7 @@ TEST_CASE("a store that cannot be read says so, and merges all of another or not
 
 TEST_CASE("a database of an older version is read, and gets the columns that it lacks") {
   Folder folder;
-  auto const set = merging_set(2);
+  auto const set = support::merging_set<Traffic>(2);
   std::string before;
   {
     ResultStore store(folder.path / "old.db");

@@ -13,9 +13,9 @@
 #include "cambium/benchmark/runner.hpp"
 #include "cambium/cambium.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/scenario/merging_site.hpp"
 #include "cambium/snapshot/freeze_run.hpp"
 #include "support/maps.hpp"
+#include "support/merging_set.hpp"
 
 using namespace cambium;
 
@@ -43,17 +43,6 @@ struct Tired {
   }
 };
 
-ScenarioSet<Traffic> merging_set(std::uint32_t count) {
-  static auto const site = find_merging_site(support::own_map("merging.xodr"));
-  ScenarioSet<Traffic> set{.title = "merging"};
-  for (std::uint32_t i = 0; i < count; ++i) {
-    set.scenarios.push_back(with_behaviors<Traffic>(
-        site.sample(4, i), [](auto const& spec) -> Traffic::Behavior { return std::get<IdmClassic>(spec.behavior); }));
-    set.scenarios.back().map_file = "merging.xodr";
-  }
-  return set;
-}
-
 /// What a contender keeps of the first scenario, as it thaws.
 template <class Behavior>
 struct Kept {
@@ -63,7 +52,7 @@ struct Kept {
 };
 template <class Behavior>
 Kept<Behavior> kept(Behavior const& behavior) {
-  auto const set = merging_set(1);
+  auto const set = support::merging_set<Traffic>(1);
   auto const run =
       contender<Traffic>(behavior, "ours", freeze_run).run(set.scenarios[0], {.label = "merging, 0"}, true);
   CHECK_FALSE(run.result.success);
@@ -111,7 +100,7 @@ TEST_CASE("a run that ends with an error is kept from just before it") {
 }
 
 TEST_CASE("a benchmark writes snapshots beside the replays of failures, also from other processes") {
-  auto const set = merging_set(3);
+  auto const set = support::merging_set<Traffic>(3);
   std::vector const all{contender<Traffic>(Tired{}, "tired", freeze_run), contender<Traffic>(Tired{}, "plain"),
                         contender<Traffic>(IdmClassic{.desired_speed = 22.0}, "idm", freeze_run)};
   std::vector<std::string> first;

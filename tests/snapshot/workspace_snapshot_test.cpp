@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -118,6 +120,7 @@ struct Stack {
     auto planner_again = Planner{};
     from_snapshot(bytes, "thawed", other.world, planner_again, other.memory, other.workspace);
     CHECK(to_snapshot({.format = format}, other.world, planner_again, other.memory, other.workspace) == bytes);
+    CHECK(other.workspace.keep() == (workspace.kept() != nullptr));  // a second call changes nothing
     other.report = std::move(report);
     *this = std::move(other);
   }
@@ -141,6 +144,9 @@ std::size_t compare(Planner const& planner, Sim const& world, std::shared_ptr<Ma
   check_equal(stack.think(planner), twin.think(planner));
   return kept + stack.report.result.kept_nodes;
 }
+
+constexpr std::size_t golden_nodes = 23;
+constexpr std::uint32_t golden_visits = 23;
 
 std::string message_of(auto const& run) {
   try {
@@ -380,4 +386,37 @@ TEST_CASE("a kept tree takes a few hundred bytes a node") {
   auto const nodes = detail::archived_trees(*stack.workspace.kept()).trees[0].nodes.size();
   REQUIRE(nodes > 50);
   CHECK(with - without < 300 * nodes + 5'000);
+}
+
+// As with worlds, in snapshot_test.cpp: files of each version of the format stay here for good.
+TEST_CASE("kept trees of earlier versions load") {
+  using Tree = detail::ArchivedSearch<Usual::Workspace::Search>;
+  auto const folder = std::filesystem::path(CAMBIUM_SOURCE_DIR) / "tests/snapshot/golden";
+  auto const map = support::straight_road(2, 600.0);
+  if (std::getenv("CAMBIUM_WRITE_GOLDEN") != nullptr) {
+    Stack<Usual> stack{traffic(map, 0, 2)};
+    stack.think(keeping<Usual>(60, 1));
+    REQUIRE(stack.workspace.keep());
+    auto const parts = detail::archived_trees(*stack.workspace.kept());
+    save_snapshot(folder / "tree_1.binary.snapshot", {.format = SnapshotFormat::binary}, parts);
+    save_snapshot(folder / "tree_1.text.snapshot", {.format = SnapshotFormat::text}, parts);
+  }
+  int files = 0;
+  for (auto const& entry : std::filesystem::directory_iterator(folder)) {
+    if (!entry.path().filename().string().starts_with("tree_")) continue;
+    CAPTURE(entry.path());
+    Tree parts;
+    load_snapshot(entry.path().string(), parts);
+    REQUIRE(parts.trees.size() == 1);
+    CHECK(parts.trees[0].nodes.size() == golden_nodes);
+    CHECK(parts.trees[0].nodes[0].visits == golden_visits);
+    CHECK(parts.dt == 0.2);
+    parts.world.map_hash = detail::hash_of_map(*map);
+    detail::ArchivedScenes scenes;
+    scenes.scenes.push_back({map, {}});
+    auto const trees = detail::restored_trees(std::move(parts), scenes);
+    CHECK(trees.searches()[0].tree().size() == golden_nodes);
+    ++files;
+  }
+  CHECK(files >= 2);
 }

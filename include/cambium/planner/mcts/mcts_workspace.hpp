@@ -96,6 +96,7 @@ class MctsWorkspace {
   /// `think`, set its time (`WorldOptions::time`). Impossible with hypotheses about the others, because then nodes have
   /// no states.
   bool keep() {
+    if (keeps_) return true;  // as it has before, or one that was restored
     auto const& result = trees_.result();
     keeps_ = !result.variation.empty() && domain().hold() == 1 && trees_.keep({result.variation.data(), result.agents});
     return keeps_;
