@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -47,8 +48,9 @@ std::string map_file_of(cb::SnapshotInfo const& info, Settings const& settings) 
   if (info.map_file.empty())
     throw cb::SnapshotError(settings.file, "does not say where its map is", "give the file by --map");
   auto const own = fs::path(CAMBIUM_SOURCE_DIR) / "maps" / fs::path(info.map_file).filename();
+  std::error_code refused;  // of a folder that may not be looked into
   for (auto const& file : {fs::path(info.map_file), own})
-    if (fs::exists(file)) return file.string();
+    if (fs::exists(file, refused)) return file.string();
   throw cb::SnapshotError(settings.file, "needs the map '" + info.map_file + "', which is not there",
                           "give the file by --map");
 }
@@ -152,7 +154,8 @@ int debug(Settings const& settings) {
   auto const info = cb::snapshot_info(bytes, settings.file);
   auto const types = types_of(info, settings.file);
   auto const map_file = map_file_of(info, settings);
-  auto const map = map_file.empty() ? cb::parse_opendrive(info.map_text).map : examples::load_map(map_file);
+  auto const map = map_file.empty() ? cb::parse_opendrive(info.map_text, {}, "the map in " + settings.file).map
+                                    : examples::load_map(map_file);
   auto const thawed = types.thaw(map, bytes, settings.file);
   print_head(info, settings.file, map_file);
   print_world(*thawed);

@@ -6,14 +6,14 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/read_file.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/snapshot.hpp"
 
 #include "common/command_line.hpp"
@@ -31,8 +31,10 @@ struct Settings {
   bool each_cycle = false, embeds_map = false;
 };
 
-desk::World traffic(Settings const& settings) {
-  desk::World world(examples::load_map(settings.map), {.seed = settings.seed});
+desk::World traffic(Settings const& settings, std::string const& map_text) {
+  auto const map =
+      map_text.empty() ? examples::load_map(settings.map) : cb::parse_opendrive(map_text, {}, settings.map).map;
+  desk::World world(map, {.seed = settings.seed});
   cb::RandomStream random(settings.seed, 0, 0);
   desk::World::Behavior ego = desk::SmoothFollower{};
   if (settings.planner == "search") {
@@ -52,7 +54,8 @@ desk::World traffic(Settings const& settings) {
 }
 
 void drive(Settings const& settings) {
-  auto world = traffic(settings);
+  std::string const map_text = settings.embeds_map ? cb::read_file<cb::MapError>(settings.map, {}) : "";
+  auto world = traffic(settings, map_text);
   desk::Cycle cycle;
   double last = 0.0, last_duration = 0.2;  // acceleration [m/s^2] and duration [s] of the last cycle
   bool is_first = true;
@@ -62,10 +65,7 @@ void drive(Settings const& settings) {
                                                         : cb::SnapshotFormat::binary;
   options.snapshot.map_file = std::filesystem::absolute(settings.map).string();
   options.snapshot.component = desk::component;
-  if (settings.embeds_map) {
-    std::ifstream file(settings.map);
-    options.snapshot.map_text.assign(std::istreambuf_iterator<char>(file), {});
-  }
+  options.snapshot.map_text = map_text;
   options.watches.push_back([&] { return cb::Collision{}(world, world.slot_of(desk::ego)) ? "ego collides" : ""; });
   options.watches.push_back(
       [&] { return world.record(desk::ego).action.acceleration < -6.0 ? "ego brakes harder than 6 m/s^2" : ""; });
@@ -133,6 +133,6 @@ int main(int argc, char** argv) {
       ->check(examples::number(0.0, 1.0))
       ->capture_default_str();
   program.add_flag("--each-cycle", settings.each_cycle, "keep all cycles");
-  program.add_flag("--embed-map", settings.embeds_map, "put the map into each file");
+  program.add_flag("--embed-map", settings.embeds_map, "put the map into each file (OpenDRIVE only)");
   return examples::run_program(program, argc, argv, [&] { drive(settings); });
 }

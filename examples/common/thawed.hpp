@@ -56,7 +56,7 @@ void read_edit(char const* name, void* object, void const* usual, cb::detail::Tr
 /// Throws `ParameterError` at `where` unless the text is one value.
 void require_json(std::string const& text, std::string const& where);
 
-/// A described struct as JSON without its defaults.
+/// A described struct as JSON without its defaults. Throws `Error` for NaN.
 [[nodiscard]] std::string difference(void* object, void const* usual, cb::detail::TransferStruct transfer);
 
 /// Restores a snapshot on its map.
@@ -108,7 +108,7 @@ class ThawedWorld final : public Thawed {
       Model const usual{};
       Model edited = model;
       read_edit(cb::detail::struct_name<Model>(), &edited, &usual, &cb::detail::transfer_any<Model>, json);
-      cb::check_parameters(edited, "the ego");
+      if (is_in_range(model)) cb::check_parameters(edited, "the ego");
       model = std::move(edited);
     };
     if (is_memory) {
@@ -120,7 +120,12 @@ class ThawedWorld final : public Thawed {
     auto frame = world_.frame();
     frame.agents[slot()].memory = memory;  // what it remembers stays
     world_.restore(frame);
-    cb::from_snapshot(cb::to_snapshot({}, world_), "the edited world", world_);  // checks what the agent remembers
+    try {
+      cb::from_snapshot(cb::to_snapshot({}, world_), "the edited world", world_);  // checks what the agent remembers
+    } catch (cb::SnapshotError const& problem) {
+      std::string const what = problem.what();
+      throw cb::ParameterError("", what.substr(0, what.find(';')), "give a value that fits its road");
+    }
   }
 
   cb::StepResult run() override {
@@ -141,7 +146,21 @@ class ThawedWorld final : public Thawed {
   [[nodiscard]] static std::string json_of(Model const& model) {
     Model const usual{};
     Model copy = model;
-    return difference(&copy, &usual, &cb::detail::transfer_any<Model>);
+    try {
+      return difference(&copy, &usual, &cb::detail::transfer_any<Model>);
+    } catch (cb::Error const&) {  // JSON has no NaN
+      return to_string(model) + "\n";
+    }
+  }
+  /// Whether an edit may be held to the ranges: a planner that went wrong may remember NaN.
+  template <class Model>
+  [[nodiscard]] static bool is_in_range(Model const& model) {
+    try {
+      cb::check_parameters(model);
+    } catch (cb::Error const&) {
+      return false;
+    }
+    return true;
   }
   [[nodiscard]] cb::Slot slot() const { return world_.slot_of(cycle_.ego); }
   [[nodiscard]] auto const& record() const { return world_.roster().agents[slot()]; }

@@ -126,6 +126,11 @@ TEST_CASE("the benchmark repeats one scenario and writes its replay") {
   CHECK(run.code == 0);
   CHECK(run.out.find("success: true") != std::string::npos);
   CHECK(content_of(replay).find("merging, scenario 3, idm") != std::string::npos);
+  auto const snapshot = (folder.path() / "replay.snapshot").string();
+  REQUIRE(program.run({"--set", "exit", "--only", "exit:2:idm", "--replay", replay}).code == 0);
+  CHECK(std::filesystem::exists(snapshot));
+  REQUIRE(program.run({"--set", "merging", "--only", "merging:3:idm", "--replay", replay}).code == 0);
+  CHECK_FALSE(std::filesystem::exists(snapshot));  // it would be of another run
 }
 
 TEST_CASE("failed runs leave replays that the report links, and a command that repeats them") {
@@ -201,6 +206,7 @@ TEST_CASE("the benchmark names the fault in its options") {
   says({"--set", "merging", "--only", "merging:99:idm"}, "give a number from 0 to 7");
   says({"--set", "merging", "--only", "merging"}, "write SET:NUMBER:BEHAVIOR");
   says({"--set", "merging", "--replay", "x.html"}, "needs --only");
+  says({"--set", "merging", "--only", "merging:3:idm", "--replay", "x.snapshot"}, "a name that ends in .html");
   says({"--split", "half"}, "write train or test");
   says({"--replays", "some"}, "write failures, all or none");
   says({"--plan-limit", "0"}, "give a number of seconds above 0");

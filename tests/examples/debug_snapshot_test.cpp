@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/sealed.hpp"
 #include "program.hpp"
 
 using program::content_of;
@@ -55,6 +56,31 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   CHECK(on.code == 0);
   CHECK(has(on.out, "no collision"));
   CHECK(debug.run({files[0], "--cycles", "5"}).code == 0);
+}
+
+TEST_CASE("a memory that holds NaN is printed, and can be edited") {
+  Program const record("record_snapshots"), debug("debug_snapshot");
+  if (!record.is_there() || !debug.is_there()) return;
+  browser::TemporaryFolder const folder;
+  REQUIRE(record.run({"--out", folder.path().string(), "--each-cycle", "--seconds", "0.5", "--format", "xml"}).code ==
+          0);
+  auto bytes = content_of(snapshots_in(folder.path()).back());
+  std::string const begin = "<planned_at>";
+  auto const at = bytes.find(begin);
+  REQUIRE(at != bytes.npos);
+  auto const value = at + begin.size();
+  bytes.replace(value, bytes.find('<', value) - value, "nan:9221120237041090560");
+  auto const file = (folder.path() / "nan.snapshot").string();
+  std::ofstream(file, std::ios::binary) << support::sealed_again(bytes);
+  auto const run = debug.run({file});
+  CHECK(run.code == 1);  // something else was recorded
+  CHECK(has(run.out, "remembers: smooth_follower_memory: planned_at=nan s"));
+  auto const edited = debug.run({file, "--edit", "memory.planned[0]=0", "--edit", "memory.planned_at=0.2"});
+  CHECK(edited.code < 2);
+  CHECK(has(edited.out, "without the edit"));
+  auto const wrong = debug.run({file, "--edit", "memory.planned_at=0.2", "--edit", "memory.planned_at=1e999"});
+  CHECK(wrong.code == 2);
+  CHECK(has(wrong.err, "planned_at"));
 }
 
 TEST_CASE("a tree search's cycles come out bit-equal in every format, with the map embedded or not") {
@@ -138,6 +164,14 @@ TEST_CASE("debug_snapshot names what is wrong with its file and options") {
   auto const cut = (folder.path() / "cut").string();
   std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
   CHECK(has(error({cut}), "is cut short"));
+  auto changed = bytes;
+  auto const time = changed.find("\ntime ") + 6;
+  changed.replace(time, changed.find('\n', time) - time, "now");
+  std::ofstream(cut, std::ios::binary) << support::sealed_again(changed);
+  CHECK(has(error({cut}), cut + ": 'now' is no number"));
   CHECK(record.run({"--out", "/proc/none"}).code == 2);
+  auto const lanelets = record.run({"--out", folder.path().string(), "--embed-map", "--map", file});
+  CHECK(lanelets.code == 2);
+  CHECK(has(lanelets.err, file));
   CHECK(record.run({}).code == 2);
 }

@@ -260,6 +260,8 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
   if (!number || *number >= set->scenarios.size())
     throw Error("--only " + only, "there is no such scenario",
                 "give a number from 0 to " + std::to_string(set->scenarios.size() - 1));
+  if (replay && !replay->ends_with(".html"))
+    throw Error("--replay", "is '" + *replay + "'", "give a name that ends in .html");
   auto const contender = chosen(contenders, {std::string(parts.back())}).front();
   auto const label = set->title + ", scenario " + std::to_string(*number);
   auto run =
@@ -280,9 +282,12 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
     std::cout << "  " << *replay << " plays it in a browser\n";
     if (!run.problem.empty()) std::cout << "  there is no snapshot beside it: " << run.problem << "\n";
     auto const snapshot = std::filesystem::path(*replay).replace_extension(".snapshot");
-    if (!run.snapshot.empty() && snapshot != *replay) {
+    if (!run.snapshot.empty()) {
       write_file(snapshot, run.snapshot);
       std::cout << "  " << snapshot.string() << " is its state before the end\n";
+    } else {
+      std::error_code refused;
+      std::filesystem::remove(snapshot, refused);  // of an earlier run
     }
   }
   return 0;

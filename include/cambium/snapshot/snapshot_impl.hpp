@@ -84,7 +84,7 @@ template <class Number>
   return {text.data(), end};
 }
 template <class Number>
-[[nodiscard]] Number exact_number(std::string const& text) {
+[[nodiscard]] Number exact_number(std::string const& text, std::string const& where = "snapshot") {
   using Bits = std::conditional_t<sizeof(Number) == 8, std::uint64_t, std::uint32_t>;
   Number value{};
   Bits bits{};
@@ -93,7 +93,7 @@ template <class Number>
   auto const* const end = text.data() + text.size();
   auto const read = is_nan ? std::from_chars(begin, end, bits) : std::from_chars(begin, end, value);
   if (read.ec != std::errc{} || read.ptr != end)
-    throw SnapshotError("snapshot", "'" + text.substr(0, 40) + "' is no number", "it is damaged: take another copy");
+    throw SnapshotError(where, "'" + text.substr(0, 40) + "' is no number", "it is damaged: take another copy");
   return is_nan ? std::bit_cast<Number>(bits) : value;
 }
 
@@ -330,7 +330,7 @@ struct OpenedSnapshot {
           is_known = true;
         }
     } else if (key == "time") {
-      info.time = exact_number<double>(value);
+      info.time = exact_number<double>(value, where);
     } else if (key == "map") {
       info.map_hash = number_of(value, 16);
     } else if (key == "map_bytes") {
@@ -346,7 +346,7 @@ struct OpenedSnapshot {
                          : key == "component" ? &info.component
                          : key == "note"      ? &info.note
                                               : nullptr;
-      if (text != nullptr) *text = value;
+      if (text != nullptr) *text = printable(value);
     }
   }
   if (!is_known) throw SnapshotError(where, "holds a kind of archive that is unknown", "read it with a newer program");

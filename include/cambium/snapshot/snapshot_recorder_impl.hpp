@@ -141,6 +141,8 @@ struct SnapshotRecorder::State {
     std::string why;
     try {
       auto const text = detail::with_head(snapshot.parts, snapshot.options);
+      if (std::filesystem::exists(snapshot.path))
+        throw SnapshotError(snapshot.path.string(), "is there already", "give each recorder a folder of its own");
       write_file(snapshot.path, text);
       files.push_back({snapshot.path, snapshot.number, text.size(), std::filesystem::file_time_type::clock::now()});
       bytes += text.size();
@@ -223,7 +225,7 @@ CAMBIUM_COLD bool SnapshotRecorder::is_kept() {
   return state_->options.each_cycle || !state_->reasons.empty();
 }
 
-CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) {
+CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) try {
   if (!state_->before) return state_->forget_lost();
   auto options = state_->options.snapshot;
   {
@@ -237,6 +239,9 @@ CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) {
   state_->last_file = state_->options.folder / name.data();
   state_->take({state_->last_file, state_->number, std::move(*state_->before), std::move(options)});
   state_->before.reset();
+} catch (std::exception const& error) {  // of memory; the cycle's own exception passes
+  state_->before.reset();
+  state_->note_failure(error.what());
 }
 
 CAMBIUM_COLD void SnapshotRecorder::discard() { state_->before.reset(); }
