@@ -149,7 +149,7 @@ class ThawedWorld final : public Thawed {
     try {
       return difference(&copy, &usual, &cb::detail::transfer_any<Model>);
     } catch (cb::Error const&) {  // JSON has no NaN
-      return to_string(model) + "\n";
+      return cb::to_string(model) + "\n";
     }
   }
   /// Whether an edit may be held to the ranges: a planner that went wrong may remember NaN.

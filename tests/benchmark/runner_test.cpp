@@ -458,9 +458,9 @@ TEST_CASE("an error names the agent that failed, and a failure of others is only
 
 TEST_CASE("agents see what their observers let them see, and a lonely ego has no gap") {
   using Noisy = World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack, ParametricObserver>;
-  auto scenario = with_behaviors<Noisy>(support::merging_set<Traffic>(1).scenarios[0], [](auto const& spec) -> Noisy::Behavior {
-    return std::get<IdmClassic>(spec.behavior.given());
-  });
+  auto scenario = with_behaviors<Noisy>(
+      support::merging_set<Traffic>(1).scenarios[0],
+      [](auto const& spec) -> Noisy::Behavior { return std::get<IdmClassic>(spec.behavior.given()); });
   auto const idm = contender<Noisy>(IdmClassic{.desired_speed = 22.0});
   auto const clear = idm.run(scenario, {}, false).result;
   for (auto& spec : scenario.agents) spec.observer = ParametricObserver{.others = {.along = 3.0}};

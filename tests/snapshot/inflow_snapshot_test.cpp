@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -58,6 +60,9 @@ struct Run {
   }
 };
 
+constexpr std::uint64_t golden_waiting = 4;
+constexpr double golden_speed = 16.3415;
+
 std::uint64_t hash_of(Run const& run) { return snapshot_hash(run.world, run.inflow); }
 
 }  // namespace
@@ -107,9 +112,76 @@ TEST_CASE("an inflow is restored only into one with the same sources, and else k
   refuse([](auto& sources) { sources.pop_back(); });
   refuse([](auto& sources) { std::swap(sources[0].lane, sources[1].lane); });
   refuse([](auto& sources) { sources[2].per_hour = 401.0; });
+  refuse([&](auto& sources) {
+    std::vector<geometry::Point> const across{{160.0, -12.0}, {160.0, 6.0}};
+    sources[2].way = map::build_free_corridor(*road, across);
+  });
   TrafficInflow<Sim> same(*road, sources_on(*road), 1, {.headway = 2.0});
   from_snapshot(bytes, "run.snapshot", same);
   CHECK(snapshot_hash(same) == snapshot_hash(run.inflow));
+}
+
+namespace {
+
+/// A driver before and after its version changed.
+struct Driver : IdmClassic {
+  static constexpr char const* name = "driver";
+  static constexpr auto parameters() { return IdmClassic::parameters(); }
+};
+struct NewDriver : Driver {
+  static constexpr unsigned version = 1;
+  void upgrade(unsigned) { desired_speed += 1.0; }
+};
+template <class Driver>
+using Traffic = World<BehaviorSet<Driver>, InterpolateExecution, SingleTrack>;
+
+}  // namespace
+
+TEST_CASE("an inflow of older drivers is upgraded, and still restored only into one with the same sources") {
+  auto const road = support::straight_road(2, 300.0);
+  auto const sources = find_sources(*road);
+  TrafficInflow<Traffic<Driver>> old(*road, {sources[0]}, 1);
+  Traffic<Driver> world(road, {});
+  auto const begin = road->lane(sources[0].lane).path.pose(3.0);
+  world.add({.position = begin.position()});  // in the way
+  old.enter(world, [](TrafficSource const&, RandomStream&) {
+    return Traffic<Driver>::AgentSpec{.behavior = Driver{{.desired_speed = 9.0}}};
+  });
+  REQUIRE(old.waiting(0) == 1);
+  auto const bytes = to_snapshot({}, old);
+  TrafficInflow<Traffic<NewDriver>> other(*road, sources, 1), same(*road, {sources[0]}, 1);
+  CHECK_THROWS_WITH_AS(from_snapshot(bytes, "old", other), doctest::Contains("with other sources"), SnapshotError);
+  from_snapshot(bytes, "old", same);
+  Traffic<NewDriver> free(road, {});
+  REQUIRE(same.enter(free, [](auto const&...) { return Traffic<NewDriver>::AgentSpec{}; }).size() == 1);
+  CHECK(std::get<NewDriver>(free.roster().agents[Slot{}].behavior).desired_speed == 10.0);
+}
+
+// As with worlds, in snapshot_test.cpp: files of each version of the format stay here for good.
+TEST_CASE("inflows of earlier versions load") {
+  auto const folder = std::filesystem::path(CAMBIUM_SOURCE_DIR) / "tests/snapshot/golden";
+  auto const road = support::straight_road(2, 300.0);
+  if (std::getenv("CAMBIUM_WRITE_GOLDEN") != nullptr) {
+    Run run(road, 7);
+    for (int i = 0; i < 60; ++i) run.step();
+    save_snapshot(folder / "inflow_1.binary.snapshot", {.format = SnapshotFormat::binary}, run.inflow);
+    save_snapshot(folder / "inflow_1.text.snapshot", {.format = SnapshotFormat::text}, run.inflow);
+  }
+  int files = 0;
+  for (auto const& entry : std::filesystem::directory_iterator(folder)) {
+    if (!entry.path().filename().string().starts_with("inflow_")) continue;
+    CAPTURE(entry.path());
+    Run run(road, 1);
+    load_snapshot(entry.path().string(), run.inflow);
+    CHECK(run.inflow.waiting(0) == golden_waiting);
+    run.step();  // whoever waits may enter an empty world
+    CHECK(run.inflow.waiting(0) == golden_waiting - 1);
+    CHECK(run.world.size() == 2);
+    CHECK(std::get<IdmClassic>(run.world.roster().agents[Slot{}].behavior).desired_speed ==
+          doctest::Approx(golden_speed));
+    ++files;
+  }
+  CHECK(files >= 2);
 }
 
 TEST_CASE("a random stream goes on where it was, in the middle of a block, too") {

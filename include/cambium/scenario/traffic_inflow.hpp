@@ -15,6 +15,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/evaluation/collision.hpp"
@@ -125,7 +126,7 @@ class TrafficInflow {
     check_parameters(rules_);
     detail::check_sources(map, sources_);
     for (std::size_t i = 0; i < sources_.size(); ++i)
-      queues_[i] = {sources_[i].lane, sources_[i].per_hour,
+      queues_[i] = {sources_[i].lane, way_of(sources_[i]), sources_[i].per_hour,
                     RandomStream(seed, static_cast<std::uint32_t>(i), 0, purpose)};
   }
 
@@ -171,6 +172,10 @@ class TrafficInflow {
   static constexpr char const* name = "inflow";
   static constexpr auto parameters() {
     using P = TrafficInflow;
+    static_assert(is_described<typename WorldType::Execution> && is_described<typename WorldType::Dynamics> &&
+                      is_described<typename WorldType::Observer>,
+                  "cambium: a snapshot of a TrafficInflow holds the next agents; let the world's executions, vehicle "
+                  "models and observers describe their parameters, see Described");
     return parameter_list(parameter("rules", &P::rules_, "-", {}, "how agents enter"),
                           parameter("queues", &P::queues_, "-", {}, "at the sources"));
   }
@@ -178,19 +183,27 @@ class TrafficInflow {
   /// Throws `ParameterError` if the queues are those of other sources.
   void check(std::string const& where) const {
     auto const is_of = [](Queue const& queue, TrafficSource const& source) {
-      return queue.lane == source.lane && queue.per_hour == source.per_hour;
+      return queue.lane == source.lane && queue.way == way_of(source) && queue.per_hour == source.per_hour;
     };
     if (!std::equal(queues_.begin(), queues_.end(), sources_.begin(), sources_.end(), is_of))
       throw ParameterError(where, "the inflow was saved with other sources",
-                           "restore it into one with the same lanes and demands, in the same order");
+                           "restore it into one with the same lanes, ways and demands, in the same order");
   }
 
  private:
   static constexpr std::uint32_t purpose = 0x696e666c;
   static constexpr double behind_begin = 0.5;  ///< of a lane: where the rear ends of those that enter are [m]
 
+  template <class Model>
+  static constexpr bool is_described = Described<Model> || detail::Variant<Model>;
+
+  [[nodiscard]] static std::vector<geometry::Point> way_of(TrafficSource const& source) {
+    return source.way ? source.way->way : std::vector<geometry::Point>();
+  }
+
   struct Queue {
-    LaneId lane = none<LaneId>;  ///< of its source, as is `per_hour`
+    LaneId lane = none<LaneId>;  ///< of its source, as are the next two
+    std::vector<geometry::Point> way{};
     double per_hour = TrafficSource::saturated;
     RandomStream random{0, 0, 0};
     double arrival = -1.0;  ///< of the next agent [s]; negative: not drawn yet
@@ -201,6 +214,7 @@ class TrafficInflow {
     static constexpr auto parameters() {
       using P = Queue;
       return parameter_list(parameter("lane", &P::lane, "-", {}, "of its source"),
+                            parameter("way", &P::way, "m", any_finite, "of its source"),
                             parameter("per_hour", &P::per_hour, "1/h", positive, "demand; inf: saturated"),
                             parameter("random", &P::random, "-", {}, "for arrivals and agents"),
                             parameter("arrival", &P::arrival, "s", any_finite, "of the next agent"),

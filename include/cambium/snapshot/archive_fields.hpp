@@ -425,14 +425,24 @@ class FieldReader {
     for_each_parameter<T>([&](auto const& p) {
       if (i < known.fields && (differs[i / 8] >> i % 8 & 1u) != 0)
         read(p.name, object.*p.field, p, like != nullptr ? &(like->*p.field) : nullptr);
-      else if constexpr (std::is_default_constructible_v<T>)
-        if (i >= known.fields) object.*p.field = T{}.*p.field;
+      else if (i >= known.fields)
+        set_default(object, p);
       ++i;
     });
     is_old_ = is_old_ || known.version < version_of<T>();
     if constexpr (requires { object.check(where_); })
       if (!is_old_) object.check(where_);
     --depth_;
+  }
+
+  /// Sets a field that an older file does not have.
+  template <class T, class Field>
+  void set_default(T& object, Field const& p) const {
+    if constexpr (std::is_default_constructible_v<T>)
+      object.*p.field = T{}.*p.field;
+    else
+      throw SnapshotError(where_, std::string("its struct '") + struct_name<T>() + "' has no '" + p.name + "' yet",
+                          "read it with an older program: there is no default to give it");
   }
 
   template <class... Models>
@@ -520,6 +530,7 @@ class FieldReader {
         if (auto const* shape = types_.shape(&type_key<Value>);
             shape != nullptr && shape->version < version_of<Value>())
           value.upgrade(shape->version);
+      if constexpr (requires { value.check(where_); }) value.check(where_);  // see read_struct
     } else if constexpr (Variant<Value>) {
       with_alternative(value, [&]<class Model>(Model const&, auto place) { upgrade(*std::get_if<place>(&value)); });
     } else if constexpr (Optional<Value>) {

@@ -23,7 +23,7 @@ namespace cambium {
 
 /// When and where a `SnapshotRecorder` writes.
 struct SnapshotRecorderOptions {
-  std::filesystem::path folder{};  ///< of the files 00000001.snapshot, ...: one a recorder; made if it is not there
+  std::filesystem::path folder{};  ///< of the files 00000001.snapshot, ...; is made if it is not there
   SnapshotOptions snapshot{};      ///< of each file; the recorder adds to the note why it was taken, and the result
   bool each_cycle = false;         ///< keeps every cycle, not only those with a reason
   /// A cycle that takes longer is a reason [s].

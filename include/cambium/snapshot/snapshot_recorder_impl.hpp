@@ -141,8 +141,6 @@ struct SnapshotRecorder::State {
     std::string why;
     try {
       auto const text = detail::with_head(snapshot.parts, snapshot.options);
-      if (std::filesystem::exists(snapshot.path))
-        throw SnapshotError(snapshot.path.string(), "is there already", "give each recorder a folder of its own");
       write_file(snapshot.path, text);
       files.push_back({snapshot.path, snapshot.number, text.size(), std::filesystem::file_time_type::clock::now()});
       bytes += text.size();
@@ -234,9 +232,12 @@ CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) tr
     state_->reasons.clear();
   }
   options.result = result;
-  std::array<char, 32> name{};
-  std::snprintf(name.data(), name.size(), "%08llu.snapshot", static_cast<unsigned long long>(++state_->number));
-  state_->last_file = state_->options.folder / name.data();
+  std::error_code refused;
+  do {
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "%08llu.snapshot", static_cast<unsigned long long>(++state_->number));
+    state_->last_file = state_->options.folder / name.data();
+  } while (std::filesystem::is_regular_file(state_->last_file, refused));  // of another recorder
   state_->take({state_->last_file, state_->number, std::move(*state_->before), std::move(options)});
   state_->before.reset();
 } catch (std::exception const& error) {  // of memory; the cycle's own exception passes

@@ -8,11 +8,12 @@
 
 namespace cambium::detail {
 
-/// Throws `ParameterError` if a parameter of a described struct, of the struct that a set holds, or of a described stage
-/// in a chain with others, is out of range.
+/// Throws `ParameterError` if a parameter of a described struct, of the struct that a set holds, or of a described
+/// stage in a chain with others, is out of range.
 template <class Parameters>
 void check_if_described(Parameters const& parameters, std::string const& where) {
-  if constexpr (Described<Parameters>) check_parameters(parameters, where);
+  if constexpr (Described<Parameters>)
+    check_parameters(parameters, where);
   else if constexpr (Variant<Parameters>)
     std::visit([&where](auto const& one) { check_if_described(one, where); }, parameters);
   else if constexpr (requires { parameters.with_stages([](auto const&...) {}); })
