@@ -15,6 +15,7 @@ void examples::require_json(std::string const& text, std::string const& where) {
   try {
     static_cast<void>(cb::detail::parse_json(text, where));
   } catch (cb::Error const&) {
-    throw cb::ParameterError(where, "has no value of JSON", "write a number, a word, true, false, or a list: [1, 2]");
+    throw cb::ParameterError(where, "has no value of JSON",
+                             "write a number (to 1e308), a word, true, false, or a list: [1, 2]");
   }
 }

@@ -30,6 +30,10 @@ template <class T>
 concept Variant = requires(T const& any) {
   detail::take_variant(any);
 };
+
+/// Whether a file can hold the model.
+template <class Model>
+concept DescribedModel = Described<Model> || Variant<Model>;
 }  // namespace detail
 
 /// A value of one of `Models`, which are all different: the model that an agent has, of those that its world admits. It

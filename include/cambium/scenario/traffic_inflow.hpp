@@ -143,7 +143,7 @@ class TrafficInflow {
     entered_.clear();
     for (std::size_t i = 0; i < sources_.size(); ++i) {
       auto& queue = queues_[i];
-      arrive(queue, sources_[i].per_hour, world.time());
+      arrive(queue, world.time());
       if (queue.waiting == 0) continue;
       if (!queue.next) queue.next = draw(sources_[i], queue.random);
       auto const id = try_to_enter(world, sources_[i], *queue.next);
@@ -172,8 +172,9 @@ class TrafficInflow {
   static constexpr char const* name = "inflow";
   static constexpr auto parameters() {
     using P = TrafficInflow;
-    static_assert(is_described<typename WorldType::Execution> && is_described<typename WorldType::Dynamics> &&
-                      is_described<typename WorldType::Observer>,
+    static_assert(detail::DescribedModel<typename WorldType::Execution> &&
+                      detail::DescribedModel<typename WorldType::Dynamics> &&
+                      detail::DescribedModel<typename WorldType::Observer>,
                   "cambium: a snapshot of a TrafficInflow holds the next agents; let the world's executions, vehicle "
                   "models and observers describe their parameters, see Described");
     return parameter_list(parameter("rules", &P::rules_, "-", {}, "how agents enter"),
@@ -193,9 +194,6 @@ class TrafficInflow {
  private:
   static constexpr std::uint32_t purpose = 0x696e666c;
   static constexpr double behind_begin = 0.5;  ///< of a lane: where the rear ends of those that enter are [m]
-
-  template <class Model>
-  static constexpr bool is_described = Described<Model> || detail::Variant<Model>;
 
   [[nodiscard]] static std::vector<geometry::Point> way_of(TrafficSource const& source) {
     return source.way ? source.way->way : std::vector<geometry::Point>();
@@ -223,12 +221,12 @@ class TrafficInflow {
     }
   };
 
-  static void arrive(Queue& queue, double per_hour, double time) {
-    if (per_hour == TrafficSource::saturated) {
+  static void arrive(Queue& queue, double time) {
+    if (queue.per_hour == TrafficSource::saturated) {
       queue.waiting = 1;
       return;
     }
-    auto const headway = [&] { return -3600.0 / per_hour * detail::portable_log(1.0 - uniform01(queue.random)); };
+    auto const headway = [&] { return -3600.0 / queue.per_hour * detail::portable_log(1.0 - uniform01(queue.random)); };
     if (queue.arrival < 0.0) queue.arrival = time + headway();
     for (; queue.arrival <= time; queue.arrival += headway()) ++queue.waiting;
   }

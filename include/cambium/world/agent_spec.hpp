@@ -57,7 +57,7 @@ struct Given : Value {
 /// The field, unless it is a struct without a description, which files cannot hold.
 template <class Owner, class Field>
 [[nodiscard]] constexpr auto if_described(Parameter<Owner, Field> field) {
-  if constexpr (Described<Field> || Variant<Field>)
+  if constexpr (DescribedModel<Field>)
     return parameter_list(field);
   else
     return parameter_list();
