@@ -142,6 +142,40 @@ template <Described T>
   return count;
 }
 
+/// What a field is, roughly: archives can be read wherever this is the same.
+template <class Value>
+[[nodiscard]] constexpr char kind_of() {
+  if constexpr (Described<Value>)
+    return 's';
+  else if constexpr (std::is_same_v<Value, std::string>)
+    return 't';
+  else if constexpr (Variant<Value>)
+    return 'v';
+  else if constexpr (Optional<Value>)
+    return 'o';
+  else if constexpr (ParameterList<Value>)
+    return 'l';
+  else if constexpr (std::is_floating_point_v<Value>)
+    return sizeof(Value) == 8 ? 'd' : 'f';
+  else
+    return 'i';
+}
+
+/// Hash of the names and kinds of a struct's first fields: who exchanges two of them shall not read the one as the
+/// other.
+template <Described T>
+[[nodiscard]] constexpr std::uint16_t hash_of_fields(std::size_t count) {
+  std::uint32_t hash = 0x811c9dc5u;  // FNV-1a
+  auto const add = [&hash](char letter) { hash = (hash ^ static_cast<unsigned char>(letter)) * 0x01000193u; };
+  std::size_t i = 0;
+  for_each_parameter<T>([&](auto const& p) {
+    if (i++ >= count) return;
+    for (char const* letter = p.name; *letter != '\0'; ++letter) add(*letter);
+    add(kind_of<std::remove_cvref_t<decltype(std::declval<T&>().*p.field)>>());
+  });
+  return static_cast<std::uint16_t>(hash ^ hash >> 16);
+}
+
 /// A field's value as archives hold it.
 template <class Value>
 [[nodiscard]] constexpr auto stored(Value value) {
@@ -185,8 +219,9 @@ void tagged(ArchiveTags* tags, char const* key, F const& f) {
 
 /// Writes described structs to an archive of Boost.Serialization.
 ///
-///     struct:       once a type its version and number of fields; then each field, or, where the reader has a similar
-///                   struct already, bits for the fields that differ, and these
+///     struct:       once a type its version, number of fields and a hash of their names; then each field, or, where
+///     the
+///                   reader has a similar struct already, bits for the fields that differ, and these
 ///     alternative:  a number; with a new one the name
 ///     list:         the length; each element by what differs from the one before
 template <class Archive>
@@ -249,6 +284,8 @@ class FieldWriter {
     if (types_.shape(&type_key<T>) == nullptr) {
       put("fields", static_cast<unsigned char>(fields + (version_of<T>() > 0 ? 128 : 0)));
       if (version_of<T>() > 0) put_whole("version", version_of<T>());
+      constexpr std::uint16_t names = hash_of_fields<T>(fields);
+      put("names", names);
       types_.add(ArchivedTypes::Shape{&type_key<T>, version_of<T>(), fields});
     }
     std::array<unsigned char, (fields + 7) / 8> differs{};
@@ -399,15 +436,25 @@ class FieldReader {
     get("fields", told);
     std::size_t const fields = told % 128;
     auto const version = told < 128 ? 0u : static_cast<unsigned>(count("version"));
-    if (version > version_of<T>() || fields > field_count<T>())
-      throw SnapshotError(where_, std::string("its struct '") + struct_name<T>() + "' is of a newer version",
-                          "read it with the program that wrote it, or a newer one");
+    std::uint16_t names = 0;
+    get("names", names);
+    auto const refuse = [this](std::string const& what, char const* remedy) {
+      throw SnapshotError(where_, std::string("its struct '") + struct_name<T>() + "' " + what, remedy);
+    };
+    if (version > version_of<T>())
+      refuse("is of a newer version", "read it with the program that wrote it, or a newer one");
+    if (fields > field_count<T>())
+      refuse(
+          "has more fields than in this program",
+          "read it with the program that wrote it, or a newer one; a field that is not used any more stays described");
+    constexpr auto all_names = hash_of_fields<T>(field_count<T>());
+    if (version == version_of<T>() && names != (fields == field_count<T>() ? all_names : hash_of_fields<T>(fields)))
+      refuse("was saved with other fields, or in another order",
+             "append new fields; for a change of one's meaning count up the struct's `version`");
     constexpr bool upgrades = requires(T & object) { object.upgrade(0u); };
     if (version < version_of<T>() && !upgrades)
-      throw SnapshotError(where_,
-                          std::string("its struct '") + struct_name<T>() + "' is of version " +
-                              std::to_string(version) + ", and this program knows no way from there",
-                          "give the struct a member `upgrade(unsigned from)`, or read it with an older program");
+      refuse("is of version " + std::to_string(version) + ", and this program knows no way from there",
+             "give the struct a member `upgrade(unsigned from)`, or read it with an older program");
     types_.add(ArchivedTypes::Shape{&type_key<T>, version, fields});
     return {&type_key<T>, version, fields};
   }

@@ -48,12 +48,12 @@ struct SnapshotOptions {
 struct SnapshotInfo {
   SnapshotFormat format{};
   std::string library;                              ///< version of cambium
-  std::string build;                                ///< compiler, and whether asserts were on
+  std::string build;                                ///< compiler, whether it fuses multiply-adds, and asserts
   std::string platform;                             ///< sizes and order of bytes
   std::string parts;                                ///< names, separated by commas
   std::optional<double> time;                       ///< of the first world [s]
   std::optional<std::uint64_t> map_hash;            ///< of its map, and of what that was built with
-  std::string map_file, map_text, component, note;  ///< as in `SnapshotOptions`
+  std::string map_file, map_text, component, note;  ///< as in `SnapshotOptions`; control characters as \x0a
   std::optional<std::uint64_t> result;              ///< likewise
 };
 
@@ -128,6 +128,8 @@ struct ArchivedParts {
 };
 [[nodiscard]] ArchivedParts archive_parts(SnapshotFormat format, SceneOfParts const& scene,
                                           std::span<SavedPart const> parts);
+/// The compiler and flags of this build, as `SnapshotInfo::build` names them.
+[[nodiscard]] std::string build_tag();
 [[nodiscard]] std::string with_head(ArchivedParts const& parts, SnapshotOptions const& options);
 void read_snapshot(std::string_view bytes, std::string const& where, SceneOfParts const& scene,
                    std::span<LoadedPart const> parts);

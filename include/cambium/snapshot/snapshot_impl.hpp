@@ -11,12 +11,15 @@
 #include <exception>
 #include <istream>
 #include <limits>
+#include <locale>
 #include <new>
 #include <ostream>
 #include <stdexcept>
 #include <streambuf>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include <boost/archive/archive_exception.hpp>
 #include <boost/archive/polymorphic_binary_iarchive.hpp>
@@ -69,7 +72,7 @@ class StringSource final : public std::streambuf {
     auto* const begin = const_cast<char*>(text.data());  // a streambuf only reads what it gets from
     setg(begin, begin, begin + text.size());
   }
-  [[nodiscard]] bool is_at_end() const { return gptr() == egptr(); }
+  [[nodiscard]] std::string_view rest() const { return {gptr(), egptr()}; }
 };
 
 /// A number for text archives, of which every bit survives; Boost's own cannot read infinities and NaN.
@@ -126,16 +129,48 @@ class TextIn final : public boost::archive::polymorphic_text_iarchive {
   void load(float& value) override { read(value); }
 };
 
-class XmlOut final : public boost::archive::polymorphic_xml_oarchive, public ArchiveTags {
+/// Refuses a value without a name, which nobody could find again.
+class NamedXmlOut : public boost::archive::xml_oarchive {
  public:
-  using boost::archive::polymorphic_xml_oarchive::polymorphic_xml_oarchive;
+  using boost::archive::xml_oarchive::xml_oarchive;
 
-  void begin(char const* key) override { boost::archive::xml_oarchive::save_start(key); }
-  void end(char const* key) override { boost::archive::xml_oarchive::save_end(key); }
+  void save_start(char const* key) {
+    boost::archive::xml_oarchive::save_start(key);
+    is_named_ = true;
+  }
+  void save_end(char const* key) {
+    boost::archive::xml_oarchive::save_end(key);
+    is_named_ = false;
+  }
+  template <class Value>
+  void save(Value const& value) {
+    take_name();
+    if constexpr (std::is_floating_point_v<Value>)
+      boost::archive::xml_oarchive::save(exact_text(value));
+    else
+      boost::archive::xml_oarchive::save(value);
+  }
+  void save_object(void const* object, boost::archive::detail::basic_oserializer const& serializer) {
+    take_name();
+    boost::archive::xml_oarchive::save_object(object, serializer);
+  }
 
  private:
-  void save(double const value) override { boost::archive::xml_oarchive::save(exact_text(value)); }
-  void save(float const value) override { boost::archive::xml_oarchive::save(exact_text(value)); }
+  void take_name() {
+    if (!std::exchange(is_named_, false))
+      throw SnapshotError("snapshot", "a member of a class has no name, which XML needs",
+                          "write `archive & BOOST_SERIALIZATION_NVP(member)`, or take another format");
+  }
+  bool is_named_ = false;
+};
+
+class XmlOut final : public boost::archive::detail::polymorphic_oarchive_route<NamedXmlOut>, public ArchiveTags {
+ public:
+  using Route = boost::archive::detail::polymorphic_oarchive_route<NamedXmlOut>;
+  using Route::Route;
+
+  void begin(char const* key) override { NamedXmlOut::save_start(key); }
+  void end(char const* key) override { NamedXmlOut::save_end(key); }
 };
 
 class XmlIn final : public boost::archive::polymorphic_xml_iarchive, public ArchiveTags {
@@ -164,6 +199,7 @@ template <class Archive>
 void save_parts(std::string& bytes, std::span<SavedPart const> parts) {
   StringSink sink(bytes);
   std::ostream stream(&sink);
+  stream.imbue(std::locale::classic());  // whatever that of the host
   Archive archive(stream, plain_archive);
   for (auto const& part : parts) part.save(archive, part.name, part.object);
 }
@@ -172,11 +208,14 @@ template <class Archive>
 void load_parts(std::string_view bytes, std::span<LoadedPart const> parts) {
   StringSource source(bytes);
   std::istream stream(&source);
+  stream.imbue(std::locale::classic());
   {
     Archive archive(stream, plain_archive);
     for (auto const& part : parts) part.load(archive, part.name, part.object);
   }
-  if (std::is_same_v<Archive, boost::archive::polymorphic_binary_iarchive> && !source.is_at_end())
+  auto const rest = source.rest();
+  if (std::is_same_v<Archive, TextIn> ? rest.find_first_not_of('\n') != rest.npos
+                                      : !std::is_same_v<Archive, XmlIn> && !rest.empty())  // XML ends by its tags
     throw SnapshotError("snapshot", "holds more than was read", "restore all that was saved, by the same `serialize`");
 }
 
@@ -186,7 +225,7 @@ void load_parts(std::string_view bytes, std::span<LoadedPart const> parts) {
   return order + "-endian " + std::to_string(sizeof(void*)) + "/" + std::to_string(sizeof(long));
 }
 
-[[nodiscard]] inline std::string build_tag() {
+CAMBIUM_COLD std::string build_tag() {
 #if defined(__clang__)
   std::string const compiler = "clang " __clang_version__;
 #elif defined(__GNUC__)
@@ -194,10 +233,15 @@ void load_parts(std::string_view bytes, std::span<LoadedPart const> parts) {
 #else
   std::string const compiler = "other compiler";
 #endif
-#ifdef NDEBUG
-  return compiler + ", without asserts";
+#if defined(__FMA__) || defined(__FP_FAST_FMA)
+  std::string const fused = ", fused multiply-add";
 #else
-  return compiler + ", with asserts";
+  std::string const fused;
+#endif
+#ifdef NDEBUG
+  return compiler + fused + ", without asserts";
+#else
+  return compiler + fused + ", with asserts";
 #endif
 }
 
@@ -298,7 +342,7 @@ struct OpenedSnapshot {
 
 /// Checks everything but the archive. Throws `SnapshotError` if the bytes are no snapshot, damaged, or newer.
 [[nodiscard]] inline OpenedSnapshot open_snapshot(std::string_view bytes, std::string const& where) {
-  auto const damaged = [&where](char const* what) {
+  auto const damaged = [&where](std::string const& what) {
     throw SnapshotError(where, what, "it is damaged: take another copy");
   };
   if (!bytes.starts_with(snapshot_magic))
@@ -312,8 +356,12 @@ struct OpenedSnapshot {
                         "read it with the program that wrote it, or a newer one");
   auto const seal = take_line(bytes).value_or("");
   auto const length = seal.substr(0, seal.find(' '));
-  if (length != std::to_string(bytes.size())) damaged("is cut short, or longer than it should be");
-  if (*version != std::to_string(*number) || seal.substr(length.size()) != " " + hex(checksum_of(bytes)))
+  auto const size = number_of(length, 10);
+  if (!size) damaged("its second line names no length");
+  if (*size != bytes.size())
+    damaged((*size > bytes.size() ? "is cut short: " : "is too long: ") + std::to_string(bytes.size()) +
+            " bytes instead of " + std::to_string(*size));
+  if (*version != std::to_string(*number) || seal != std::to_string(*size) + " " + hex(checksum_of(bytes)))
     damaged("has a wrong checksum");
   OpenedSnapshot opened;
   auto& info = opened.info;

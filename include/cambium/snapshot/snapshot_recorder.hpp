@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -31,7 +30,7 @@ struct SnapshotRecorderOptions {
   /// Asked after each cycle: a text is a reason, such as a collision or a traffic rule that was broken; and so is an
   /// exception.
   std::vector<std::function<std::string()>> watches{};
-  std::size_t most_files = 10'000;                    ///< beyond, the oldest files go
+  std::size_t most_files = 10'000;                    ///< beyond, the oldest files go; on a full disk, too
   std::uint64_t most_bytes = std::uint64_t{1} << 30;  ///< likewise
   /// Files written longer ago go [s].
   double longest_kept = std::numeric_limits<double>::infinity();
@@ -45,27 +44,28 @@ struct SnapshotRecorderOptions {
 /// `trigger` are for one thread.
 class SnapshotRecorder {
  public:
-  /// Throws `SnapshotError` if the folder cannot be made. Numbers go on behind the files that are there.
+  /// Throws `SnapshotError` if the folder cannot be made, or a bound is NaN. Numbers go on behind the files that are
+  /// there, which count as its own: the bounds hold for all. Several recorders may write to one folder.
   explicit SnapshotRecorder(SnapshotRecorderOptions options);
   SnapshotRecorder(SnapshotRecorder&&) noexcept;
   SnapshotRecorder& operator=(SnapshotRecorder&&) noexcept;
   /// Writes what waits.
   ~SnapshotRecorder();
 
-  /// Runs `cycle` and keeps the state of `parts` before it if there is a reason. Returns what `cycle` returns; lets its
-  /// exceptions pass. The state of `parts` after it is the result that a repetition is compared with.
+  /// Runs `cycle` and keeps the state of `parts` before it if there is a reason; a `StepResult` that it returns is one
+  /// if the step was invalid. Returns what `cycle` returns; lets its exceptions pass. The state of `parts` after it is
+  /// the result that a repetition is compared with.
   template <class Cycle, class... Parts>
   auto run(Cycle&& cycle, Parts const&... parts) {
     begin(parts...);
-    auto const start = std::chrono::steady_clock::now();
     if constexpr (std::is_void_v<std::invoke_result_t<Cycle&>>) {
       guarded(cycle);
-      finish(start, parts...);
+      end(parts...);
     } else {
       auto returned = guarded(cycle);
       if constexpr (std::is_same_v<decltype(returned), StepResult>)
         if (!returned) trigger(to_string(returned.problem));
-      finish(start, parts...);
+      end(parts...);
       return returned;
     }
   }
@@ -101,7 +101,7 @@ class SnapshotRecorder {
   [[nodiscard]] std::size_t failed() const;
   /// Why the last one was not written; empty if there is none.
   [[nodiscard]] std::string problem() const;
-  /// The file of the last cycle that was kept; it may still wait, or have been refused by the disk.
+  /// The file that was written last; empty if there is none.
   [[nodiscard]] std::filesystem::path last_file() const;
 
  private:
@@ -122,13 +122,7 @@ class SnapshotRecorder {
       throw;
     }
   }
-  template <class... Parts>
-  void finish(std::chrono::steady_clock::time_point start, Parts const&... parts) {
-    note_time(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    end(parts...);
-  }
   void begin_parts(detail::SceneOfParts const& scene, std::span<detail::SavedPart const> parts);
-  void note_time(double seconds);
   [[nodiscard]] bool is_kept();
   [[nodiscard]] std::optional<std::uint64_t> hash_of_results(std::span<detail::SavedPart const> parts);
   void keep(std::optional<std::uint64_t> result);

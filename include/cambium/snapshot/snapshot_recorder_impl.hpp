@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
@@ -32,8 +33,6 @@ struct SnapshotRecorder::State {
     std::filesystem::file_time_type written;
   };
   struct Waiting {
-    std::filesystem::path path;
-    std::uint64_t number;
     detail::ArchivedParts parts;
     SnapshotOptions options;
   };
@@ -41,13 +40,15 @@ struct SnapshotRecorder::State {
   SnapshotRecorderOptions options;
   std::optional<detail::ArchivedParts> before{};  ///< of the cycle under way
   bool is_lost = false;                           ///< the cycle under way could not be saved
-  std::uint64_t number = 0;                       ///< of the last file
-  std::filesystem::path last_file{};
-  std::deque<File> files{};  ///< oldest first; of the thread that writes
+  std::chrono::steady_clock::time_point begin{};  ///< of the cycle under way
+
+  std::deque<File> files{};  ///< oldest first; these three are of the thread that writes
+  std::uint64_t number = 0;  ///< of the last file
   std::uint64_t bytes = 0;
 
   mutable std::mutex mutex{};  ///< of the following
   std::string reasons{}, problem{};
+  std::filesystem::path last_file{};
   std::size_t written = 0, dropped = 0, failed = 0;
   std::deque<Waiting> waiting{};
   bool is_writing = false, is_over = false;
@@ -55,6 +56,9 @@ struct SnapshotRecorder::State {
   std::thread thread{};
 
   explicit State(SnapshotRecorderOptions given) : options(std::move(given)) {
+    if (std::isnan(options.longest_cycle) || std::isnan(options.longest_kept))
+      throw SnapshotError("snapshot recorder", "longest_cycle or longest_kept is NaN",
+                          "give seconds; infinity: no bound");
     std::error_code problem_there;
     std::filesystem::create_directories(options.folder, problem_there);
     if (!std::filesystem::is_directory(options.folder, problem_there))
@@ -75,21 +79,21 @@ struct SnapshotRecorder::State {
     thread.join();
   }
 
-  /// Takes over a file of an earlier recorder, or removes what one had not finished.
+  /// Takes over a file of an earlier recorder, or removes what one has not finished, a minute ago or longer.
   void adopt(std::filesystem::path const& path) {
     auto const name = path.filename().string();
     auto const digits = std::min(name.find_first_not_of("0123456789"), name.size());
     auto const rest = name.substr(digits);
+    if (digits < 8 || digits > 18 || (rest != ".snapshot" && rest != ".snapshot.part")) return;
     std::error_code refused;
-    if (digits < 8 || digits > 18 || !rest.starts_with(".snapshot")) return;
-    if (rest.starts_with(".snapshot.part")) {
-      std::filesystem::remove(path, refused);
+    auto const written_at = std::filesystem::last_write_time(path, refused);
+    if (refused) return;
+    if (rest != ".snapshot") {
+      if (std::filesystem::file_time_type::clock::now() - written_at > std::chrono::minutes(1))
+        std::filesystem::remove(path, refused);
       return;
     }
-    if (rest != ".snapshot") return;
     auto const size = std::filesystem::file_size(path, refused);
-    if (refused) return;
-    auto const written_at = std::filesystem::last_write_time(path, refused);
     if (refused) return;
     files.push_back({path, std::strtoull(name.c_str(), nullptr, 10), size, written_at});
     bytes += size;
@@ -141,8 +145,13 @@ struct SnapshotRecorder::State {
     std::string why;
     try {
       auto const text = detail::with_head(snapshot.parts, snapshot.options);
-      write_file(snapshot.path, text);
-      files.push_back({snapshot.path, snapshot.number, text.size(), std::filesystem::file_time_type::clock::now()});
+      auto problem = write_new(text);
+      if (problem == std::errc::no_space_on_device && !files.empty()) {
+        remove_front();
+        problem = write_new(text);
+      }
+      if (problem) throw detail::cannot_write(path_of(number), problem);
+      files.push_back({path_of(number), number, text.size(), std::filesystem::file_time_type::clock::now()});
       bytes += text.size();
       remove_oldest();
     } catch (std::exception const& error) {
@@ -151,18 +160,44 @@ struct SnapshotRecorder::State {
     if (!why.empty()) return note_failure(why);
     std::lock_guard const lock(mutex);
     ++written;
+    last_file = files.back().path;
+  }
+
+  [[nodiscard]] std::filesystem::path path_of(std::uint64_t file) const {
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "%08llu.snapshot", static_cast<unsigned long long>(file));
+    return options.folder / name.data();
+  }
+
+  /// Writes to the next number that no recorder has taken. A part that was not there before is a claim: while one holds
+  /// it, nobody else makes the file.
+  [[nodiscard]] std::error_code write_new(std::string const& text) {
+    while (true) {
+      auto const path = path_of(++number);
+      auto part = path;
+      part += ".part";
+      std::error_code none;
+      auto problem = detail::write_text(part, "wbx", text);
+      if (problem == std::errc::file_exists) continue;
+      bool const is_taken = !problem && std::filesystem::exists(path, none);
+      if (!problem && !is_taken) std::filesystem::rename(part, path, problem);
+      if (problem || is_taken) std::filesystem::remove(part, none);
+      if (!is_taken) return problem;
+    }
   }
 
   void remove_oldest() {
     auto const now = std::filesystem::file_time_type::clock::now();
-    std::error_code ignored;  // a file that somebody else has removed
     while (files.size() > 1 &&
            (files.size() > options.most_files || bytes > options.most_bytes ||
-            std::chrono::duration<double>(now - files.front().written).count() > options.longest_kept)) {
-      std::filesystem::remove(files.front().path, ignored);
-      bytes -= files.front().bytes;
-      files.pop_front();
-    }
+            std::chrono::duration<double>(now - files.front().written).count() > options.longest_kept))
+      remove_front();
+  }
+  void remove_front() {
+    std::error_code ignored;  // a file that somebody else has removed
+    std::filesystem::remove(files.front().path, ignored);
+    bytes -= files.front().bytes;
+    files.pop_front();
   }
 };
 
@@ -184,6 +219,7 @@ CAMBIUM_COLD void SnapshotRecorder::begin_parts(detail::SceneOfParts const& scen
   } catch (...) {
     state_->note_failure("a part threw what is no std::exception when it was saved");
   }
+  state_->begin = std::chrono::steady_clock::now();
 }
 
 CAMBIUM_COLD std::optional<std::uint64_t> SnapshotRecorder::hash_of_results(std::span<detail::SavedPart const> parts) {
@@ -201,11 +237,9 @@ CAMBIUM_COLD void SnapshotRecorder::trigger(std::string const& reason) {
   if (reasons.size() < longest) reasons += (reasons.empty() ? "" : "; ") + reason.substr(0, longest);
 }
 
-CAMBIUM_COLD void SnapshotRecorder::note_time(double seconds) {
-  if (seconds > state_->options.longest_cycle) trigger("it took " + detail::rounded_text(seconds) + " s");
-}
-
 CAMBIUM_COLD bool SnapshotRecorder::is_kept() {
+  auto const took = std::chrono::duration<double>(std::chrono::steady_clock::now() - state_->begin).count();
+  if (state_->before && took > state_->options.longest_cycle) trigger("it took " + detail::rounded_text(took) + " s");
   for (auto const& watch : state_->options.watches) {
     try {
       if (auto const reason = watch(); !reason.empty()) trigger(reason);
@@ -232,13 +266,7 @@ CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) tr
     state_->reasons.clear();
   }
   options.result = result;
-  std::error_code refused;
-  do {
-    std::array<char, 32> name{};
-    std::snprintf(name.data(), name.size(), "%08llu.snapshot", static_cast<unsigned long long>(++state_->number));
-    state_->last_file = state_->options.folder / name.data();
-  } while (std::filesystem::is_regular_file(state_->last_file, refused));  // of another recorder
-  state_->take({state_->last_file, state_->number, std::move(*state_->before), std::move(options)});
+  state_->take({std::move(*state_->before), std::move(options)});
   state_->before.reset();
 } catch (std::exception const& error) {  // of memory; the cycle's own exception passes
   state_->before.reset();
@@ -268,6 +296,9 @@ CAMBIUM_COLD std::string SnapshotRecorder::problem() const {
   std::lock_guard const lock(state_->mutex);
   return state_->problem;
 }
-CAMBIUM_COLD std::filesystem::path SnapshotRecorder::last_file() const { return state_->last_file; }
+CAMBIUM_COLD std::filesystem::path SnapshotRecorder::last_file() const {
+  std::lock_guard const lock(state_->mutex);
+  return state_->last_file;
+}
 
 }  // namespace cambium
