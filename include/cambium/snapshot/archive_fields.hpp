@@ -91,6 +91,8 @@ class ArchivedTypes {
  public:
   static constexpr std::size_t longest = std::size_t{1} << 24;  ///< elements of a list
   static constexpr int deepest = 200;                           ///< nested structs
+  /// What a reader copies: so much, and for each byte that it reads another so many [bytes].
+  static constexpr std::size_t copied = std::size_t{1} << 26, copied_per_byte = 64;
 
   struct Shape {
     void const* type;
@@ -174,6 +176,48 @@ template <Described T>
     add(kind_of<std::remove_cvref_t<decltype(std::declval<T&>().*p.field)>>());
   });
   return static_cast<std::uint16_t>(hash ^ hash >> 16);
+}
+
+template <class Value>
+[[nodiscard]] constexpr bool has_list();
+template <class... Models>
+[[nodiscard]] constexpr bool any_has_list(std::variant<Models...> const*) {
+  return (has_list<Models>() || ...);
+}
+/// Whether copies of a value may need memory besides its own.
+template <class Value>
+[[nodiscard]] constexpr bool has_list() {
+  if constexpr (Described<Value>) {
+    bool any = false;
+    for_each_parameter<Value>(
+        [&any]<class Owner, class Field>(Parameter<Owner, Field> const&) { any = any || has_list<Field>(); });
+    return any;
+  } else if constexpr (Variant<Value>) {
+    return any_has_list(static_cast<Value const*>(nullptr));
+  } else if constexpr (Optional<Value>) {
+    return has_list<typename Value::value_type>();
+  } else {
+    return std::is_same_v<Value, std::string> || (ParameterList<Value> && !PointsToElements<Value>);
+  }
+}
+
+/// How much memory a copy of `value` needs besides its own [bytes].
+template <class Value>
+[[nodiscard]] std::size_t bytes_in(Value const& value) {
+  std::size_t bytes = 0;
+  if constexpr (!has_list<Value>())
+    return bytes;
+  else if constexpr (Described<Value>)
+    for_each_parameter<Value>([&](auto const& p) { bytes += bytes_in(value.*p.field); });
+  else if constexpr (std::is_same_v<Value, std::string>)
+    bytes = value.size();
+  else if constexpr (Variant<Value>)
+    with_alternative(value, [&](auto const& model, auto) { bytes = bytes_in(model); });
+  else if constexpr (Optional<Value>)
+    bytes = value ? bytes_in(*value) : 0;
+  else
+    for (auto const& element : elements_of(value)) bytes += sizeof(element) + bytes_in(element);
+  return bytes;
 }
 
 /// A field's value as archives hold it.
@@ -397,6 +441,7 @@ class FieldReader {
   template <class Value>
   void get(char const* key, Value& value) {
     archive_ >> boost::serialization::make_nvp(key, value);
+    read_ += sizeof(value);
   }
 
   [[nodiscard]] std::uint64_t whole(char const* key, std::uint64_t most) {
@@ -463,7 +508,11 @@ class FieldReader {
   void read_struct(T& object, T const* like) {
     if (++depth_ > ArchivedTypes::deepest) damaged();
     auto const known = shape<T>();
-    if (like != nullptr) object = *like;
+    if (like != nullptr) {
+      copied_ += bytes_in(*like);
+      if (copied_ > ArchivedTypes::copied + ArchivedTypes::copied_per_byte * read_) damaged();
+      object = *like;
+    }
     std::array<unsigned char, (field_count<T>() + 7) / 8> differs{};
     differs.fill(0xff);
     if (like != nullptr)
@@ -595,7 +644,8 @@ class FieldReader {
   std::string where_;
   ArchivedTypes types_;
   int depth_ = 0;
-  bool is_old_ = false;  ///< a struct was of an older version
+  std::size_t read_ = 0, copied_ = 0;  ///< [bytes]
+  bool is_old_ = false;                ///< a struct was of an older version
 };
 
 }  // namespace detail

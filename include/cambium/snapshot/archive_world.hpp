@@ -30,7 +30,7 @@ namespace detail {
 
 struct AnyValue {
   template <class T>
-  operator T() const;  // never called
+  requires(!std::is_empty_v<T>) operator T() const;  // never called
 };
 template <class T, std::size_t... i>
 [[nodiscard]] constexpr bool takes(std::index_sequence<i...>) {
@@ -55,57 +55,68 @@ template <class Memory>
   } else {
     std::size_t end = 0;
     for_each_parameter<Memory>([&end]<class Owner, class Field>(Parameter<Owner, Field> const&) {
+      if (std::is_empty_v<Field>) return;
       end = (end + alignof(Field) - 1) / alignof(Field) * alignof(Field) + sizeof(Field);
     });
     return (end + alignof(Memory) - 1) / alignof(Memory) * alignof(Memory) == sizeof(Memory);
   }
 }
 
-template <class Memory>
-[[nodiscard]] constexpr bool check_memory() {
-  static_assert(Described<Memory>,
-                "cambium: a behaviour's Memory must describe its fields, or a snapshot would lose them; give it "
+template <bool is_memory, class T, class... Around>
+[[nodiscard]] constexpr bool check_described();
+
+/// True. Else a compile error says what a snapshot cannot hold of a field. `Around`: the structs that hold it.
+template <bool is_memory, class Field, class... Around>
+[[nodiscard]] constexpr bool check_field() {
+  if constexpr ((std::is_same_v<Field, Around> || ...))
+    return true;
+  else if constexpr (Described<Field>)
+    return check_described<is_memory, Field, Around...>();
+  else if constexpr (Variant<Field>)
+    return []<class... Models>(std::variant<Models...> const*) {
+      return (check_described<is_memory, Models, Around...>() && ...);
+    }(static_cast<Field const*>(nullptr));
+  else if constexpr (Optional<Field>)
+    return check_field<is_memory, typename Field::value_type, Around...>();
+  else if constexpr (!std::is_same_v<Field, std::string> && ParameterList<Field>)
+    return check_field<is_memory, ElementOf<Field>, Around...>();
+  else
+    return true;
+}
+
+/// The same of a model or memory. The fields of a memory must come in the order of its description, those of a model
+/// need not.
+template <bool is_memory, class T, class... Around>
+[[nodiscard]] constexpr bool check_described() {
+  static_assert(Described<T>,
+                "cambium: a snapshot holds only models and memories that describe their fields; give this one "
                 "`static constexpr char const* name` and `static constexpr auto parameters()`, see Described");
-  if constexpr (Described<Memory>) {
-    static_assert(describes_all<Memory>(),
-                  "cambium: the parameters() of a behaviour's Memory, or of a struct in it, leave out a field, or name "
-                  "the fields in another order than the struct does; a snapshot would lose it");
-    for_each_parameter<Memory>([]<class Owner, class Field>(Parameter<Owner, Field> const&) {
-      if constexpr (Described<Field>) static_cast<void>(check_memory<Field>());
+  if constexpr (Described<T>) {
+    static_assert(
+        is_memory ? describes_all<T>() : !has_more_members<T, field_count<T>()>(),
+        "cambium: the parameters() of a model or of its Memory, or of a struct in them, leave out a field, or "
+        "name those of a Memory in another order than the struct does; a snapshot would lose it");
+    for_each_parameter<T>([]<class Owner, class Field>(Parameter<Owner, Field> const&) {
+      static_assert(check_field<is_memory, Field, T, Around...>());
     });
   }
   return true;
 }
 
-template <class... Memories>
-[[nodiscard]] constexpr bool check_memories(std::variant<Memories...> const*) {
-  return (check_memory<Memories>() && ...);
-}
-
-template <class Model>
-[[nodiscard]] constexpr bool check_model() {
-  static_assert(Described<Model>,
-                "cambium: a snapshot holds only models that describe their parameters; give this one "
-                "`static constexpr char const* name` and `static constexpr auto parameters()`, see Described");
-  return true;
-}
-template <class... Models>
-[[nodiscard]] constexpr bool check_models(std::variant<Models...> const*) {
-  return (check_model<Models>() && ...);
-}
-
-/// As `check_model` for what is either one model or a set of them.
-template <class Slot>
+/// As `check_described` for what is either one struct or a set of them.
+template <bool is_memory, class Slot>
 [[nodiscard]] constexpr bool check_slot() {
   if constexpr (Variant<Slot>)
-    return check_models(static_cast<Slot const*>(nullptr));
+    return check_field<is_memory, Slot>();
   else
-    return check_model<Slot>();
+    return check_described<is_memory, Slot>();
 }
 
-/// Hash of all that traffic knows of a map, and of what it was built with.
+/// Hash of all that traffic knows of a map, and of what it was built with, unless that is the default: an option more
+/// leaves it as it is.
 [[nodiscard]] inline std::uint64_t hash_of_map(Map const& map) {
-  return map::content_hash(map) ^ hash_parameters(map.options());
+  auto const hash = map::content_hash(map);
+  return same_bits(map.options(), {}) ? hash : hash ^ hash_parameters(map.options());
 }
 
 /// What the road corridor of an agent is built from.
@@ -199,10 +210,12 @@ struct ArchivedWorld {
 /// What the archive holds of a world. Throws `SnapshotError` if a road was not built by this library.
 template <class World>
 [[nodiscard]] ArchivedWorld<World> archived(World const& world) {
-  static_assert(check_memories(static_cast<typename World::Behaviors::Memory const*>(nullptr)));
-  static_assert(check_models(static_cast<typename World::Behavior const*>(nullptr)));
-  static_assert(check_slot<typename World::Execution>() && check_slot<typename World::Dynamics>() &&
-                check_slot<typename World::Observer>());
+  using Record = typename World::Record;
+  static_assert(check_slot<true, typename World::Behaviors::Memory>() &&
+                check_described<true, typename World::State>() && check_slot<true, decltype(Record::execution)>() &&
+                check_described<true, decltype(Record::past)>());
+  static_assert(check_slot<false, typename World::Behavior>() && check_slot<false, typename World::Execution>() &&
+                check_slot<false, typename World::Dynamics>() && check_slot<false, typename World::Observer>());
   auto const& roster = world.roster();
   ArchivedWorld<World> parts;
   parts.map_hash = hash_of_map(world.map());
@@ -341,6 +354,7 @@ template <class World>
   }
   for (auto& object : parts.objects) {
     check_outline(object.outline);
+    require_consistent(static_cast<std::uint32_t>(object.id) >= roster->next_object_id, "its objects are not sorted");
     roster->next_object_id = static_cast<std::uint32_t>(object.id);
     static_cast<void>(enter_object(*map, *roster, std::move(object.outline)));
   }
@@ -349,6 +363,8 @@ template <class World>
     auto& agent = parts.agents[i];
     auto& record = parts.frame.agents[i];
     require_consistent(agent.road < roads.size(), "an agent has no road");
+    require_consistent(record.status != AgentStatus::driving || record.state.time == parts.frame.time,
+                       "an agent drives at another time");
     require_consistent(i == 0 || parts.agents[i - 1].id < agent.id, "its agents are not sorted");
     place_on(*roads[agent.road], agent.behavior, record);
     auto const lane = roads[agent.road]->corridors[record.lane.corridor].pieces[record.lane.piece].lane;
@@ -357,6 +373,8 @@ template <class World>
                                       std::move(agent.execution), std::move(agent.dynamics), std::move(agent.observer)},
                                      std::move(agent.goal)));
   }
+  require_consistent(parts.next_agent_id >= roster->next_agent_id && parts.next_object_id >= roster->next_object_id,
+                     "the next id is taken");
   roster->revision = parts.revision;
   roster->next_agent_id = parts.next_agent_id;
   roster->next_object_id = parts.next_object_id;

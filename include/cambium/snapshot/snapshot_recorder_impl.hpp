@@ -145,12 +145,12 @@ struct SnapshotRecorder::State {
     std::string why;
     try {
       auto const text = detail::with_head(snapshot.parts, snapshot.options);
-      auto problem = write_new(text);
-      if (problem == std::errc::no_space_on_device && !files.empty()) {
+      auto refused = write_new(text);
+      if (refused == std::errc::no_space_on_device && !files.empty()) {
         remove_front();
-        problem = write_new(text);
+        refused = write_new(text);
       }
-      if (problem) throw detail::cannot_write(path_of(number), problem);
+      if (refused) throw detail::cannot_write(path_of(number), refused);
       files.push_back({path_of(number), number, text.size(), std::filesystem::file_time_type::clock::now()});
       bytes += text.size();
       remove_oldest();
@@ -176,13 +176,12 @@ struct SnapshotRecorder::State {
       auto const path = path_of(++number);
       auto part = path;
       part += ".part";
-      std::error_code none;
-      auto problem = detail::write_text(part, "wbx", text);
-      if (problem == std::errc::file_exists) continue;
-      bool const is_taken = !problem && std::filesystem::exists(path, none);
-      if (!problem && !is_taken) std::filesystem::rename(part, path, problem);
-      if (problem || is_taken) std::filesystem::remove(part, none);
-      if (!is_taken) return problem;
+      std::error_code none, refused = detail::write_text(part, "wbx", text);
+      if (refused == std::errc::file_exists) continue;
+      bool const is_taken = !refused && std::filesystem::exists(path, none);
+      if (!refused && !is_taken) std::filesystem::rename(part, path, refused);
+      if (refused || is_taken) std::filesystem::remove(part, none);
+      if (!is_taken) return refused;
     }
   }
 

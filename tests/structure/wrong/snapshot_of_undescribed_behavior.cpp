@@ -1,4 +1,4 @@
-// expect: cambium: a snapshot holds only models that describe their parameters
+// expect: cambium: a snapshot holds only models and memories that describe their fields
 #include <cambium/snapshot.hpp>
 #include <cambium/world.hpp>
 #include <cambium/dynamics.hpp>

@@ -1,4 +1,4 @@
-// expect: cambium: a behaviour's Memory must describe its fields, or a snapshot would lose them
+// expect: cambium: a snapshot holds only models and memories that describe their fields
 #include <cambium/snapshot.hpp>
 #include <cambium/world.hpp>
 #include <cambium/dynamics.hpp>

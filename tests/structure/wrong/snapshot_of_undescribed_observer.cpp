@@ -1,4 +1,4 @@
-// expect: cambium: a snapshot holds only models that describe their parameters
+// expect: cambium: a snapshot holds only models and memories that describe their fields
 #include <cambium/behavior/following/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>

@@ -202,8 +202,9 @@ struct HumanDriver {
   /// The acceleration decided a reaction time ago [m/s^2].
   [[nodiscard]] double in_effect(Memory const& memory, double dt) const {
     double const steps = std::max(0.0, reaction_time - static_cast<double>(memory.age)) / interval(dt);
-    auto const later = std::min(static_cast<std::size_t>(steps), decisions - 1),
-               earlier = std::min(later + 1, decisions - 1);
+    constexpr std::size_t last = decisions - 1;
+    auto const later = steps < static_cast<double>(last) ? static_cast<std::size_t>(steps) : last,
+               earlier = std::min(later + 1, last);
     double const share = steps - static_cast<double>(later);
     return (1.0 - share) * static_cast<double>(memory.decided[later]) +
            share * static_cast<double>(memory.decided[earlier]);
