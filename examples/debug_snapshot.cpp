@@ -72,6 +72,9 @@ void print_world(examples::Thawed const& thawed) {
   for (auto const& agent : thawed.agents())
     std::printf("  %5s  %-20s %8.2f %8.2f  %8.2f   %8.2f  %s\n", agent.id.c_str(), agent.model.c_str(), agent.x,
                 agent.y, agent.speed, agent.acceleration, agent.status.c_str());
+}
+
+void print_model(examples::Thawed const& thawed) {
   auto const [usual, behavior, memory] = std::array{std::string("{}\n"), thawed.behavior(), thawed.memory()};
   std::printf("\n  agent %s: %s, %s  remembers: %s", thawed.ego().id.c_str(), thawed.ego().model.c_str(),
               behavior == usual ? "parameters at their defaults\n"
@@ -144,12 +147,73 @@ void print_test(std::string const& file, std::string const& map_file, std::strin
 }
 
 /// How the ego comes out of a cycle.
-void print_ego(char const* what, double duration, cb::StepResult const& result, examples::ThawedAgent const& ego) {
-  std::printf("%s of %.3f s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", what, duration,
-              to_string(result.problem), ego.id.c_str(), ego.x, ego.y, ego.speed, ego.acceleration);
+void print_ego(std::string const& what, cb::StepResult const& result, examples::ThawedAgent const& ego) {
+  std::printf("%s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", what.c_str(), to_string(result.problem),
+              ego.id.c_str(), ego.x, ego.y, ego.speed, ego.acceleration);
+}
+
+/// Says whether the cycle came out as recorded.
+void print_verdict(cb::SnapshotInfo const& info, bool is_equal) {
+  bool const is_of_other = info.library != cb::library_version;
+  std::printf("%s\n", is_equal       ? "It came out bit-equal to what was recorded."
+                      : !info.result ? "Its result was not recorded: there is nothing to compare with."
+                      : is_of_other  ? "It cannot be compared: another version of cambium recorded it."
+                                     : "It came out otherwise than recorded.");
+  if (!is_equal && info.result && info.build != cb::detail::build_tag())
+    std::printf(
+        "It was recorded by %s; this program is of %s. Fused multiply-adds (-march=native) change the last bits.\n",
+        info.build.c_str(), cb::detail::build_tag().c_str());
+}
+
+/// Runs the cycle as it was recorded, beside the edited one.
+void print_unedited(examples::Thawed& as_recorded, examples::Thawed const& edited, bool is_equal) {
+  try {
+    auto const result = as_recorded.run();
+    print_ego("without the edit", result, as_recorded.ego());
+  } catch (std::exception const& error) {
+    std::printf("without the edit it threw an exception: %s\n", error.what());
+    return;
+  }
+  if (is_equal)
+    std::printf("The edit changes nothing: it came out bit-equal to what was recorded.\n");
+  else if (as_recorded.agents() == edited.agents())
+    std::printf("The edit moves no agent elsewhere in this cycle.\n");
+}
+
+/// Goes on until `settings` say, or the ego has left traffic.
+void go_on(examples::Thawed& thawed, Settings const& settings) {
+  double const end = settings.goes_on ? thawed.time_limit().value_or(thawed.time() + 60.0) : 0.0;
+  std::string last;
+  bool collides = false;
+  auto const look = [&] {
+    auto const trouble = thawed.trouble();
+    if (!trouble.empty() && trouble != last)
+      std::printf("%.1f s: agent %s %s\n", thawed.time(), thawed.ego().id.c_str(), trouble.c_str());
+    collides = collides || trouble.starts_with("collides");
+    last = trouble;
+  };
+  look();
+  for (std::uint64_t i = 1; (i < settings.cycles || thawed.time() < end) && thawed.ego_drives(); ++i) {
+    try {
+      if (auto const next = thawed.run(); !next) {
+        std::printf("%.1f s: %s\n", thawed.time(), to_string(next.problem));
+        break;
+      }
+    } catch (std::exception const& error) {
+      std::printf("%.1f s: threw an exception: %s\n", thawed.time(), error.what());
+      break;
+    }
+    look();
+  }
+  if (settings.goes_on || settings.cycles > 1)
+    std::printf("until %.1f s: agent %s %s, %s\n", thawed.time(), thawed.ego().id.c_str(), thawed.ego().status.c_str(),
+                collides ? "after a collision" : "no collision");
 }
 
 int debug(Settings const& settings) {
+  std::error_code none;
+  if (!settings.replay.empty() && fs::equivalent(settings.replay, settings.file, none))
+    throw cb::ParameterError("--replay", "is the snapshot itself", "give the name of another file");
   auto const bytes = cb::read_snapshot_file(settings.file);
   auto const info = cb::snapshot_info(bytes, settings.file);
   auto const types = types_of(info, settings.file);
@@ -159,10 +223,17 @@ int debug(Settings const& settings) {
   auto const thawed = types.thaw(map, bytes, settings.file);
   print_head(info, settings.file, map_file);
   print_world(*thawed);
-  for (auto const& text : settings.edits) edit(*thawed, text);
-  if (!settings.replay.empty()) thawed->film(fs::path(settings.file).filename().string());
+  print_model(*thawed);
+  auto title =
+      fs::path(settings.file).filename().string() + ", from " + cb::detail::rounded_text(thawed->time()) + " s";
+  for (auto const& text : settings.edits) {
+    edit(*thawed, text);
+    title += ", " + text;
+  }
+  if (!settings.edits.empty()) print_model(*thawed);
+  if (!settings.replay.empty()) thawed->film(title);
 
-  double const duration = thawed->time_step();
+  auto const cycle = "the cycle of " + cb::detail::rounded_text(thawed->time_step()) + " s";
   cb::StepResult result;
   std::fflush(stdout);
   if (settings.breaks) std::fprintf(stderr, "debug_snapshot: stops before the cycle, for a debugger\n");
@@ -170,48 +241,20 @@ int debug(Settings const& settings) {
     if (settings.breaks) std::raise(SIGTRAP);
     result = thawed->run();  // the cycle: step into it
   } catch (std::exception const& error) {
-    std::printf("\nthe cycle of %.3f s threw an exception: %s\n", duration, error.what());
+    std::printf("\n%s threw an exception: %s\n", cycle.c_str(), error.what());
     if (settings.as_test || !settings.replay.empty()) std::printf("It has no result: neither a replay nor a test.\n");
     return 1;
   }
 
-  auto const ego = thawed->ego();
-  print_ego("\nthe cycle", duration, result, ego);
+  print_ego("\n" + cycle, result, thawed->ego());
   bool const is_equal = info.result && thawed->hash() == *info.result;
-  bool const is_of_other = info.library != cb::library_version;
-  if (settings.edits.empty()) {
-    std::printf("%s\n", is_equal       ? "It came out bit-equal to what was recorded."
-                        : !info.result ? "Its result was not recorded: there is nothing to compare with."
-                        : is_of_other  ? "It cannot be compared: another version of cambium recorded it."
-                                       : "It came out otherwise than recorded.");
-  } else {
-    auto const as_recorded = types.thaw(map, bytes, settings.file);
-    try {
-      auto const unedited = as_recorded->run();
-      print_ego("without the edit", duration, unedited, as_recorded->ego());
-    } catch (std::exception const& error) {
-      std::printf("without the edit it threw an exception: %s\n", error.what());
-    }
-    if (is_equal) std::printf("The edit changes nothing: it came out bit-equal to what was recorded.\n");
-  }
-  double const end = settings.goes_on ? thawed->time() + 60.0 : 0.0;
-  bool collides = thawed->ego_collides();
-  for (std::uint64_t i = 1; (i < settings.cycles || thawed->time() < end) && thawed->ego_drives(); ++i) {
-    try {
-      if (auto const next = thawed->run(); !next) {
-        std::printf("%.1f s: %s\n", thawed->time(), to_string(next.problem));
-        break;
-      }
-    } catch (std::exception const& error) {
-      std::printf("%.1f s: threw an exception: %s\n", thawed->time(), error.what());
-      break;
-    }
-    collides = collides || thawed->ego_collides();
-  }
-  if (settings.goes_on || settings.cycles > 1)
-    std::printf("until %.1f s: agent %s %s, %s\n", thawed->time(), ego.id.c_str(), thawed->ego().status.c_str(),
-                collides ? "after a collision" : "no collision");
+  if (settings.edits.empty())
+    print_verdict(info, is_equal);
+  else
+    print_unedited(*types.thaw(map, bytes, settings.file), *thawed, is_equal);
+  go_on(*thawed, settings);
   if (!settings.replay.empty()) {
+    if (!info.note.empty()) thawed->recording().notes.push_back(info.note);
     cb::write_html_replay(settings.replay, thawed->recording());
     auto const figure = fs::path(settings.replay).replace_extension(".svg");
     cb::write_svg_picture(figure, thawed->recording(), {.frame = 0});
@@ -238,15 +281,16 @@ int main(int argc, char** argv) {
   auto* const cycles = program.add_option("--cycles", settings.cycles, "how many to run")
                            ->check(examples::whole_number(1, 100'000))
                            ->capture_default_str();
-  program.add_flag("--break", settings.breaks, "stop in the debugger before the cycle (without one, the program ends)");
+  program.add_flag("--break", settings.breaks,
+                   "stop in the debugger before the cycle (without one, SIGTRAP ends the program)");
   auto* const edits = program
                           .add_option("--edit", settings.edits,
                                       "change the ego first: behavior.jerk=1, memory.planned_at=0; may be repeated")
                           ->type_name("KEY=VALUE")
-                          ->expected(1)
-                          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+                          ->allow_extra_args(false)
                           ->check(examples::not_empty());
-  program.add_flag("--into-simulation", settings.goes_on, "go on for a minute")->excludes(cycles);
+  program.add_flag("--into-simulation", settings.goes_on, "go on to the end of the benchmark's run, else for a minute")
+      ->excludes(cycles);
   program.add_flag("--as-test", settings.as_test, "print a test that repeats the cycle as recorded")->excludes(edits);
   program.add_option("--replay", settings.replay, "write a replay that opens in a browser, and a figure beside it")
       ->type_name("OUT.html")

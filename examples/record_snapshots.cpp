@@ -101,10 +101,11 @@ void drive(Settings const& settings) {
   recorder.flush();
   std::printf("%d cycles, %.1f s; %zu snapshots in %s\n", cycles, world.time(), recorder.written(),
               settings.out.c_str());
-  if (recorder.failed() > 0)
-    std::printf("%zu could not be written: %s\n", recorder.failed(), recorder.problem().c_str());
   if (recorder.written() > 0)
     std::printf("next: examples/run debug_snapshot %s\n", recorder.last_file().string().c_str());
+  if (recorder.failed() > 0)
+    throw cb::SnapshotError(std::to_string(recorder.failed()) + " snapshots",
+                            "could not be written, the last one because: " + recorder.problem());
 }
 
 }  // namespace

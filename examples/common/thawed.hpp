@@ -12,6 +12,7 @@
 
 #include "cambium/core/transfer_parameters.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/off_road.hpp"
 #include "cambium/snapshot/snapshot.hpp"
 #include "cambium/viewer/record_world.hpp"
 #include "cambium/world/world.hpp"
@@ -24,6 +25,8 @@ namespace cb = cambium;
 struct ThawedAgent {
   std::string id, model, status;
   double x, y, speed, acceleration;
+
+  friend bool operator==(ThawedAgent const&, ThawedAgent const&) = default;
 };
 
 /// The world of a snapshot and what its cycle needs, whatever their types.
@@ -38,7 +41,10 @@ class Thawed {
   [[nodiscard]] virtual double time() const = 0;
   [[nodiscard]] virtual double time_step() const = 0;  ///< of the next cycle
   [[nodiscard]] virtual bool ego_drives() const = 0;
-  [[nodiscard]] virtual bool ego_collides() = 0;
+  /// What the ego does that it should not: "collides with agent 3"; empty: nothing.
+  [[nodiscard]] virtual std::string trouble() = 0;
+  /// When the run that the snapshot is of would end [s]; nothing if that is not known.
+  [[nodiscard]] virtual std::optional<double> time_limit() const = 0;
   [[nodiscard]] virtual std::uint64_t hash() const = 0;
   /// Reads JSON into the ego's behaviour, or into what it remembers.
   virtual void edit(std::string const& json, bool is_memory) = 0;
@@ -98,7 +104,18 @@ class ThawedWorld final : public Thawed {
     auto const status = world_.status(cycle_.ego);
     return status == cb::AgentStatus::driving || status == cb::AgentStatus::not_started;
   }
-  [[nodiscard]] bool ego_collides() override { return cb::Collision{}(world_, slot()); }
+  [[nodiscard]] std::string trouble() override {
+    if (auto const contact = cb::Collision{}.contact(world_, slot()))
+      return "collides with " + (cb::is_valid(contact->agent) ? "agent " + to_string(contact->agent)
+                                                              : "object " + to_string(contact->object));
+    return cb::OffRoad{}(world_, slot()) ? "is not on the road" : "";
+  }
+  [[nodiscard]] std::optional<double> time_limit() const override {
+    if constexpr (requires { cycle_.time_limit; })
+      return cycle_.time_limit;
+    else
+      return std::nullopt;
+  }
   [[nodiscard]] std::uint64_t hash() const override { return cb::snapshot_hash(world_); }
 
   void edit(std::string const& json, bool is_memory) override {

@@ -45,13 +45,16 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   CHECK(has(again.out, "remembers: {\n \"planned_at\": 0.2,"));
   CHECK(has(again.out, "bit-equal to what was recorded"));
   CHECK(has(again.out, "TEST_CASE(\"the cycle of 00000001.snapshot comes out as recorded\")"));
-  CHECK(has(content_of(replay), "00000001.snapshot"));
+  CHECK(has(content_of(replay), "00000001.snapshot, from 0.9 s"));
+  CHECK(has(content_of(replay), "a jerk of 1.68889 m/s^3"));
   CHECK(has(content_of(folder.path() / "cycle.svg"), "<svg"));
   auto const mended = debug.run({files[0], "--edit", "behavior.mended=1"});
   CHECK(mended.code == 1);
   CHECK(has(mended.out, "-3.121 m/s^2"));
-  CHECK(
-      has(mended.out, "without the edit of 0.200 s: no problem; agent 0 at (31.053, -5.250), 8.266 m/s, -2.721 m/s^2"));
+  CHECK(has(mended.out, "with these parameters, else defaults: {\n \"mended\": 1"));
+  CHECK(has(mended.out, "without the edit: no problem; agent 0 at (31.053, -5.250), 8.266 m/s, -2.721 m/s^2"));
+  auto const same = debug.run({"--edit", "behavior.idm.comfortable_braking=1.67", files[0]});
+  CHECK(has(same.out, "The edit"));
   auto const on = debug.run({files[0], "--into-simulation"});
   CHECK(on.code == 0);
   CHECK(has(on.out, "no collision"));
@@ -123,7 +126,7 @@ TEST_CASE("failures of the benchmark leave snapshots that open at the desk") {
   }
   auto const edited = debug.run({found.front(), "--edit", "behavior.desired_speed=3"});
   CHECK(edited.code == 1);
-  CHECK(has(edited.out, "without the edit of 0.200 s"));
+  CHECK(has(edited.out, "without the edit: "));
   auto const is_search = [](auto const& file) { return has(file, "mcts_hypothesis"); };
   auto const search = debug.run(
       {*std::find_if(found.begin(), found.end(), is_search), "--edit", "behavior.options.budget.iterations=0"});
@@ -159,6 +162,10 @@ TEST_CASE("debug_snapshot names what is wrong with its file and options") {
   CHECK(has(error({file, "--edit", "behavior.jerk=1", "--as-test"}), "--as-test"));
   CHECK(has(error({file, "--cycles", "0"}), "--cycles"));
   CHECK(has(error({file, "--replay", file}), "ends in .html"));
+  auto const page = (folder.path() / "page.html").string();
+  fs::copy(file, page);
+  CHECK(has(error({page, "--replay", page}), "is the snapshot itself"));
+  CHECK(debug.run({"--edit", "behavior.jerk=1", page, "--cycles", "2"}).code == 1);
   CHECK(debug.run({file, "--edit", "behavior.jerk=1", "--edit", "memory.planned_at=0.5"}).code == 1);
   auto const bytes = content_of(file);
   auto const cut = (folder.path() / "cut").string();
