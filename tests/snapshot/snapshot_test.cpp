@@ -135,6 +135,24 @@ struct Ordered {
       return parameter_list(a, b, c);
   }
 };
+struct Spaced {
+  int count = 0;
+  static constexpr char const* name = "my stack";
+  template <class Archive>
+  void serialize(Archive& archive, unsigned) {
+    archive& boost::serialization::make_nvp("count", count);
+  }
+};
+struct Texts {
+  struct Text {
+    std::string text{};
+    static constexpr char const* name = "text";
+    static constexpr auto parameters() { return parameter_list(parameter("text", &Text::text, "-", {}, "")); }
+  };
+  std::vector<Text> all{};
+  static constexpr char const* name = "texts";
+  static constexpr auto parameters() { return parameter_list(parameter("all", &Texts::all, "-", {}, "")); }
+};
 struct Nameless {
   int count = 0;
   std::vector<double> numbers{};
@@ -321,6 +339,49 @@ TEST_CASE("a class without names for its members is no part of an XML file; what
             from_snapshot(to_snapshot({.format = format}, nameless), "x", before);
           }).find("holds more than was read") != std::string::npos);
   }
+}
+
+TEST_CASE("a world that contradicts itself is refused") {
+  auto const map = support::straight_road(2, 500.0);
+  auto world = traffic(map);
+  geometry::Polygon const cone{{300, -3}, {301, -3}, {301, -2}, {300, -2}};
+  static_cast<void>(world.add_object(cone));
+  static_cast<void>(world.add_object(cone));
+  auto const refusal = [&](auto const& change) {
+    auto parts = detail::archived(world);
+    change(parts);
+    return message_of([&] { static_cast<void>(detail::restored<Sim>(map, std::move(parts))); });
+  };
+  CHECK(refusal([](auto&) {}) == "no error");
+  CHECK(refusal([](auto& parts) { parts.next_agent_id = 0; }).find("the next id is taken") != std::string::npos);
+  CHECK(refusal([](auto& parts) { parts.next_object_id = 1; }).find("the next id is taken") != std::string::npos);
+  CHECK(refusal([](auto& parts) { parts.objects[1].id = parts.objects[0].id; }).find("its objects are not sorted") !=
+        std::string::npos);
+  CHECK(refusal([](auto& parts) {
+          parts.frame.agents[Slot{1}].state.time += 1e6;
+        }).find("an agent drives at another time") != std::string::npos);
+  Sim thawed(map);
+  from_snapshot(to_snapshot({}, world), "x", thawed);
+  CHECK(thawed.roster().largest_shape == world.roster().largest_shape);
+  CHECK(thawed.add_object(cone) == world.add_object(cone));
+}
+
+TEST_CASE("a number out of its range, a name that is no tag, and a file that would fill the memory are refused") {
+  Ordered<0> ordered{1.0, 2.0, 12};
+  CHECK(message_of([&] { from_snapshot(to_snapshot({}, ordered), "x", ordered); }).find("x: c: is 12") == 0);
+  Spaced spaced;
+  CHECK(message_of([&] {
+          static_cast<void>(to_snapshot({.format = SnapshotFormat::xml}, spaced));
+        }).find("no archive can hold its parts") != std::string::npos);
+  Texts texts{std::vector<Texts::Text>(800, {std::string(100'000, 'x')})};
+  auto const small = to_snapshot({}, texts);
+  CHECK(small.size() < 110'000);
+  CHECK(message_of([&] { from_snapshot(small, "x", texts); }).find("x: its content contradicts itself") == 0);
+}
+
+TEST_CASE("a map built with the defaults is known by its content alone") {
+  auto const map = support::straight_road(2, 500.0);
+  CHECK(detail::hash_of_map(*map) == map::content_hash(*map));
 }
 
 TEST_CASE("the host's locale is not in the files") {

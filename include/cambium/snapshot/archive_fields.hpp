@@ -24,6 +24,8 @@
 
 namespace cambium {
 
+namespace detail {
+
 /// Version of the fields of `T`: its `static constexpr unsigned version`, else 0.
 template <class T>
 [[nodiscard]] constexpr unsigned version_of() {
@@ -33,7 +35,9 @@ template <class T>
     return 0;
 }
 
-namespace detail {
+/// Whether this library writes `T` field by field, without what Boost notes of classes.
+template <class T>
+inline constexpr bool is_archived_by_fields = Described<T>;
 
 /// Calls `f(*get_if<i>(&value), i)` for the alternative that `value` holds, as a constant.
 template <std::size_t i = 0, class... Models, class F>
@@ -663,15 +667,15 @@ requires(!cambium::detail::SerializesItself<T, Archive>) void serialize(Archive&
     cambium::detail::FieldReader(archive).read(cambium::detail::struct_name<T>(), object);
 }
 
-template <cambium::Described T>
-struct implementation_level<T> {
+template <class T>
+requires(cambium::detail::is_archived_by_fields<T>) struct implementation_level<T> {
   using tag = mpl::integral_c_tag;
   using type = mpl::int_<object_serializable>;
   static constexpr int value = object_serializable;
 };
 
-template <cambium::Described T>
-struct tracking_level<T> {
+template <class T>
+requires(cambium::detail::is_archived_by_fields<T>) struct tracking_level<T> {
   using tag = mpl::integral_c_tag;
   using type = mpl::int_<track_never>;
   static constexpr int value = track_never;

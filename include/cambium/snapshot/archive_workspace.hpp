@@ -23,6 +23,9 @@ namespace cambium {
 
 namespace detail {
 
+template <class Domain, class Options>
+inline constexpr bool is_archived_by_fields<MctsWorkspace<Domain, Options>> = true;
+
 /// Whether searches of `Domain` can keep a tree.
 template <class Domain>
 inline constexpr bool keeps_trees = is_deterministic<Domain> && !SamplesRoot<Domain>;
@@ -305,19 +308,5 @@ void serialize(Archive& archive, cambium::MctsWorkspace<Domain, Options>& worksp
     workspace = std::move(restored);
   }
 }
-
-template <class Domain, class Options>
-struct implementation_level<cambium::MctsWorkspace<Domain, Options>> {
-  using tag = mpl::integral_c_tag;
-  using type = mpl::int_<object_serializable>;
-  static constexpr int value = object_serializable;
-};
-
-template <class Domain, class Options>
-struct tracking_level<cambium::MctsWorkspace<Domain, Options>> {
-  using tag = mpl::integral_c_tag;
-  using type = mpl::int_<track_never>;
-  static constexpr int value = track_never;
-};
 
 }  // namespace boost::serialization

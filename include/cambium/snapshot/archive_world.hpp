@@ -119,6 +119,9 @@ template <bool is_memory, class Slot>
   return same_bits(map.options(), {}) ? hash : hash ^ hash_parameters(map.options());
 }
 
+template <class T>
+requires(is_world<T>) inline constexpr bool is_archived_by_fields<T> = true;
+
 /// What the road corridor of an agent is built from.
 struct ArchivedRoad {
   std::vector<LaneId> route;
@@ -405,19 +408,5 @@ requires(cambium::detail::is_world<T>) void serialize(Archive& archive, T& world
       cambium::detail::scenes_of(archive).scenes.push_back({world.shared_map(), world.roster().free_roads});
   }
 }
-
-template <class T>
-requires(cambium::detail::is_world<T>) struct implementation_level<T> {
-  using tag = mpl::integral_c_tag;
-  using type = mpl::int_<object_serializable>;
-  static constexpr int value = object_serializable;
-};
-
-template <class T>
-requires(cambium::detail::is_world<T>) struct tracking_level<T> {
-  using tag = mpl::integral_c_tag;
-  using type = mpl::int_<track_never>;
-  static constexpr int value = track_never;
-};
 
 }  // namespace boost::serialization

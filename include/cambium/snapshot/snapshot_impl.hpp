@@ -284,16 +284,21 @@ CAMBIUM_COLD ArchivedParts archive_parts(SnapshotFormat format, SceneOfParts con
   ArchivedParts archived{format, names_of_parts(parts), std::nullopt, scene.time, {}};
   if (scene.map != nullptr) archived.map_hash = hash_of_map(*scene.map);
   archived.archive.reserve(8192);
-  switch (format) {
-    case SnapshotFormat::binary:
-      save_parts<boost::archive::polymorphic_binary_oarchive>(archived.archive, parts);
-      break;
-    case SnapshotFormat::text:
-      save_parts<TextOut>(archived.archive, parts);
-      break;
-    case SnapshotFormat::xml:
-      save_parts<XmlOut>(archived.archive, parts);
-      break;
+  try {
+    switch (format) {
+      case SnapshotFormat::binary:
+        save_parts<boost::archive::polymorphic_binary_oarchive>(archived.archive, parts);
+        break;
+      case SnapshotFormat::text:
+        save_parts<TextOut>(archived.archive, parts);
+        break;
+      case SnapshotFormat::xml:
+        save_parts<XmlOut>(archived.archive, parts);
+        break;
+    }
+  } catch (boost::archive::archive_exception const& problem) {
+    throw SnapshotError("snapshot", std::string("no archive can hold its parts (") + problem.what() + ")",
+                        "in XML, give names that are tags: letters, digits, _");
   }
   return archived;
 }
