@@ -26,7 +26,7 @@ namespace cb = cambium;
 /// A follower with a defect, for the case study. It plans accelerations in steps of half a second, and in its next
 /// cycle goes on from the planned one, with limited jerk. Between two planned values it interpolates, wrongly if the
 /// cycle comes late: the share of the way from one to the other then counts from the begin of the plan.
-struct SmoothFollower {
+struct SmoothFollower : cb::IdmParameters {
   static constexpr std::size_t knots = 5;
   static constexpr double spacing = 0.5;  // [s]
 
@@ -43,7 +43,6 @@ struct SmoothFollower {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  cb::IdmParameters idm{};
   double jerk = 0.8;
   double mended = 0.0;
 
@@ -52,10 +51,10 @@ struct SmoothFollower {
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = SmoothFollower;
-    return cb::parameter_list(
-        cb::parameter("idm", &P::idm, "-", {}, "how it follows"),
-        cb::parameter("jerk", &P::jerk, "m/s^3", cb::positive, "limit"),
-        cb::parameter("mended", &P::mended, "-", cb::Range{0, 1}, "1: it interpolates as it should"));
+    return cb::join_parameters(cb::idm_parameters<P>(),
+                               cb::parameter_list(cb::parameter("jerk", &P::jerk, "m/s^3", cb::positive, "limit"),
+                                                  cb::parameter("mended", &P::mended, "-", cb::Range{0, 1},
+                                                                "1: it interpolates as it should")));
   }
 
   /// The acceleration that was planned for `since` [s] after the plan was made.
@@ -72,7 +71,7 @@ struct SmoothFollower {
     auto const leader = view.ahead();
     double const infinite = std::numeric_limits<double>::infinity();
     double const wanted =
-        cb::idm_acceleration(idm, speed, leader ? leader->gap : infinite, leader ? leader->speed : speed);
+        cb::idm_acceleration(*this, speed, leader ? leader->gap : infinite, leader ? leader->speed : speed);
     double const since = view.time() - memory.planned_at;
     double begin = since < 2.0 ? interpolated(memory, since) : wanted;
     memory.planned_at = view.time();

@@ -53,8 +53,11 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   CHECK(has(mended.out, "-3.121 m/s^2"));
   CHECK(has(mended.out, "with these parameters, else defaults: {\n \"mended\": 1"));
   CHECK(has(mended.out, "without the edit: no problem; agent 0 at (31.053, -5.250), 8.266 m/s, -2.721 m/s^2"));
-  auto const same = debug.run({"--edit", "behavior.idm.comfortable_braking=1.67", files[0]});
-  CHECK(has(same.out, "The edit"));
+  auto const faster = debug.run({"--edit", "behavior.desired_speed=12", files[0]});
+  CHECK(faster.code == 1);
+  CHECK(has(faster.out, "\"desired_speed\": 12"));
+  auto const same = debug.run({"--edit", "behavior.highest_acceleration=7.5", files[0]});
+  CHECK(has(same.out, "The edit moves no agent elsewhere in this cycle."));
   auto const on = debug.run({files[0], "--into-simulation"});
   CHECK(on.code == 0);
   CHECK(has(on.out, "no collision"));
