@@ -3,14 +3,19 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "cambium/cambium.hpp"
+#include "cambium/core/read_file.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/planner.hpp"
 #include "support/maps.hpp"
 
@@ -29,9 +34,95 @@ World thawed(World const& world, std::shared_ptr<Map const> const& map, Snapshot
   return other;
 }
 
-/// Steps `world` and a twin that is saved and restored before each step, and compares them bit by bit.
-template <class World>
-void compare(World world, std::shared_ptr<Map const> const& other_map, int steps, double dt, int first_format) {
+/// Names of the memories' fields, and whether somebody's has ever been other than at first.
+using Moved = std::map<std::string, bool>;
+
+template <class Value>
+void note_moves(Moved& moved, std::string const& name, Value const& value, Value const& usual) {
+  if constexpr (Described<Value>) {
+    for_each_parameter<Value>([&](auto const& p) {
+      note_moves(moved, std::string(detail::struct_name<Value>()) + "." + p.name, value.*p.field, usual.*p.field);
+    });
+  } else if constexpr (detail::Variant<Value>) {
+    detail::with_alternative(value,
+                             [&]<class Model>(Model const& model, auto) { note_moves(moved, name, model, Model{}); });
+  } else {
+    bool& has_moved = moved[name];
+    has_moved = has_moved || !detail::same_bits(value, usual);
+    if constexpr (detail::Optional<Value>) {
+      if (value) note_moves(moved, name + ".value", *value, std::remove_cvref_t<decltype(*value)>{});
+    } else if constexpr (detail::ParameterList<Value> && !std::is_same_v<Value, std::string>) {
+      for (auto const& element : detail::elements_of(value))
+        note_moves(moved, name + ".element", element, std::remove_cvref_t<decltype(element)>{});
+    }
+  }
+}
+
+/// Draws about half of a model's parameters: numbers near their defaults, those that are 0 between 0 and 1, switches
+/// and choices.
+template <class Model>
+void vary(Model& model, RandomStream& random) {
+  Model drawn = model;
+  for_each_parameter<Model>([&](auto const& p) {
+    auto& field = drawn.*p.field;
+    using Field = std::remove_cvref_t<decltype(field)>;
+    bool const is_drawn = uniform01(random) < 0.5;
+    if constexpr (Described<Field>)
+      vary(field, random);
+    else if constexpr (std::is_same_v<Field, bool>)
+      field = field != is_drawn;
+    else if constexpr (std::is_enum_v<Field>)
+      field = is_drawn ? static_cast<Field>(Uniform{0.0, p.range.high + 0.999}(random)) : field;
+    else if constexpr (std::is_same_v<Field, double>)
+      field = !is_drawn      ? field
+              : field == 0.0 ? Uniform{0.0, std::min(1.0, p.range.high)}(random)
+                             : std::clamp(field * Uniform{0.5, 1.5}(random), p.range.low, p.range.high);
+  });
+  try {
+    check_parameters(drawn);
+    model = drawn;
+  } catch (ParameterError const&) {  // the drawn ones do not fit together: it keeps its own
+  }
+}
+
+/// Sets in a memory what a planner or a host chooses for the model.
+template <class Memory>
+void choose(Memory& memory, RandomStream& random) {
+  double const share = uniform01(random);
+  if constexpr (requires { memory.choose(1u); }) {
+    memory.choose(static_cast<std::size_t>(3.0 * share));
+  } else if constexpr (requires { memory.steering; }) {
+    memory = {.acceleration = share, .steering = 0.02 * share};
+  } else if constexpr (requires { memory.towards; }) {
+    memory.speed_share = static_cast<float>(share);
+    memory.offset = 0.5f;
+    memory.towards = CorridorId{0};
+  } else if constexpr (requires { memory.chosen; }) {
+    memory.chosen = static_cast<std::uint8_t>(3.0 * share);
+  } else if constexpr (requires { memory.time_headway; }) {
+    memory.time_headway = static_cast<float>(1.0 + share);
+  }
+}
+
+/// The project's own map; of "all-way stop", the crossing with stop signs instead of its lights.
+std::shared_ptr<Map const> map_named(std::string const& name) {
+  if (name != "all-way stop") return support::own_map(name);
+  auto text = read_file<MapError>(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr", {});
+  std::string const light = "type=\"1000001\"";
+  for (auto at = text.find(light); at != text.npos; at = text.find(light))
+    text.replace(at, light.size(), "type=\"206\"");
+  return parse_opendrive(text, {}, name).map;
+}
+
+struct DoNothing {
+  void operator()(auto const&) const {}
+};
+
+/// Steps `world` and a twin that is saved and restored before each step, and compares them bit by bit. `look` is called
+/// with every record of each step.
+template <class World, class Look = DoNothing>
+void compare(World world, std::shared_ptr<Map const> const& other_map, int steps, double dt, int first_format,
+             Look const& look = {}) {
   World twin = world;
   for (int i = 0; i < steps; ++i) {
     CAPTURE(i);
@@ -40,6 +131,7 @@ void compare(World world, std::shared_ptr<Map const> const& other_map, int steps
     CHECK(a.failed == b.failed);
     REQUIRE(snapshot_hash(world) == snapshot_hash(twin));
     REQUIRE(world.frame() == twin.frame());
+    for (auto const& record : twin.frame().agents) look(record);
   }
   CHECK(world.roster().next_agent_id == twin.roster().next_agent_id);
 }
@@ -81,6 +173,50 @@ TEST_CASE("traffic of all models goes on bit by bit after it was saved and resto
   }
 }
 
+TEST_CASE("what drivers remember goes on when they queue, stop, turn and react late") {
+  Moved moved;
+  for (std::string const name : {"all-way stop", "intersection_4way.xodr", "lane_drop.xodr", "roundabout.xodr"}) {
+    CAPTURE(name);
+    auto const map = map_named(name), again = map_named(name);
+    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+      CAPTURE(seed);
+      RandomStream random(seed, 0, 3);
+      Sim world(map, {.seed = seed});
+      for (auto const& light : map->lights())
+        world.set_light(light.id, {.cycle = 20.0, .green_begin = 5.0, .green_end = Uniform{6.0, 20.0}(random)});
+      if (name == "all-way stop") {  // two that come to the crossing at once
+        world.add({.position = {-40, -1.75}, .speed = 8, .behavior = Intersection{}});
+        world.add({.position = {1.75, -40}, .heading = M_PI / 2, .speed = 8, .behavior = Intersection{}});
+      }
+      for (std::size_t i = 0; world.size() < 12 && i < 100; ++i) {
+        auto const& lane = map->lanes()[static_cast<std::size_t>(
+            Uniform{0.0, static_cast<double>(map->lanes().size()) - 1e-9}(random))];
+        if (lane.type != map::LaneType::driving || lane.path.length() < 20.0) continue;
+        auto const pose = lane.path.pose(Uniform{5.0, lane.path.length() - 10.0}(random));
+        auto behavior = one_of<Sim::Behavior>(seed + i);
+        std::visit([&](auto& model) { vary(model, random); }, static_cast<Sim::Behavior::variant&>(behavior));
+        world.add({.position = pose.position(),
+                   .heading = pose.heading,
+                   .speed = Uniform{0.0, 10.0}(random),
+                   .behavior = behavior});
+        if (cambium::Collision{.margin = 2.0}(world, Slot{static_cast<std::uint32_t>(world.size() - 1)}))
+          world.remove(world.roster().agents[Slot{static_cast<std::uint32_t>(world.size() - 1)}].id);
+      }
+      auto frame = world.frame();
+      for (auto& record : frame.agents) std::visit([&](auto& memory) { choose(memory, random); }, record.memory);
+      world.restore(frame);
+      compare(world, again, 50, seed % 4 == 0 ? 0.02 : 0.25, static_cast<int>(seed), [&](auto const& record) {
+        note_moves(moved, "memory", record.memory, {});
+        note_moves(moved, "lane", record.lane, {});
+      });
+    }
+  }
+  for (auto const& [field, has_moved] : moved) {
+    CAPTURE(field);
+    CHECK(has_moved);
+  }
+}
+
 TEST_CASE("every execution, vehicle and observer model goes on bit by bit") {
   using Execution = ExecutionSet<InterpolateExecution, StanleyExecution, LqrExecution>;
   using Vehicles = DynamicSet<SingleTrack, KinematicPoint>;
@@ -88,6 +224,11 @@ TEST_CASE("every execution, vehicle and observer model goes on bit by bit") {
   using Eyes = ObserverSet<PerfectObserver, ParametricObserver, OccludedObserver, DelayedObserver<3>, Chain>;
   using Models = World<BehaviorSet<IdmClassic, Mobil, Intersection>, Execution, Vehicles, Eyes>;
   auto const map = support::own_map("highway.xodr"), again = support::own_map("highway.xodr");
+  auto const varied = [](auto models, RandomStream& random) {
+    std::visit([&](auto& model) { vary(model, random); }, models);
+    return models;
+  };
+  Moved moved;
   for (std::uint32_t seed = 0; seed < 80; ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, 0, 1);
@@ -96,10 +237,17 @@ TEST_CASE("every execution, vehicle and observer model goes on bit by bit") {
       world.add({.position = {20.0 + 25.0 * i, -5.25},
                  .speed = Uniform{5.0, 25.0}(random),
                  .behavior = one_of<Models::Behavior>(i + seed),
-                 .execution = one_of<Execution>(i),
-                 .dynamics = one_of<Vehicles>(i % 5),
-                 .observer = one_of<Eyes>(i / 2)});
-    compare(world, again, 10, 0.2, static_cast<int>(seed));
+                 .execution = varied(one_of<Execution>(i), random),
+                 .dynamics = varied(one_of<Vehicles>(i % 5), random),
+                 .observer = varied(one_of<Eyes>(i / 2), random)});
+    compare(world, again, 15, 0.2, static_cast<int>(seed), [&](auto const& record) {
+      note_moves(moved, "execution", record.execution, {});
+      note_moves(moved, "past", record.past, {});
+    });
+  }
+  for (auto const& [field, has_moved] : moved) {
+    CAPTURE(field);
+    CHECK(has_moved);
   }
   auto const goes_on = [&]<class Vehicle>(Vehicle const& vehicle) {
     using Own = World<BehaviorSet<IdmClassic>, StanleyExecution, Vehicle>;
