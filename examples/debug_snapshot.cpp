@@ -230,7 +230,10 @@ int debug(Settings const& settings) {
     edit(*thawed, text);
     title += ", " + text;
   }
-  if (!settings.edits.empty()) print_model(*thawed);
+  if (!settings.edits.empty()) {
+    std::printf("\n  edited:");
+    print_model(*thawed);
+  }
   if (!settings.replay.empty()) thawed->film(title);
 
   auto const cycle = "the cycle of " + cb::detail::rounded_text(thawed->time_step()) + " s";

@@ -51,7 +51,7 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   auto const mended = debug.run({files[0], "--edit", "behavior.mended=1"});
   CHECK(mended.code == 1);
   CHECK(has(mended.out, "-3.121 m/s^2"));
-  CHECK(has(mended.out, "with these parameters, else defaults: {\n \"mended\": 1"));
+  CHECK(has(mended.out, "edited:\n  agent 0: smooth_follower, with these parameters, else defaults: {\"mended\": 1}"));
   CHECK(has(mended.out, "without the edit: no problem; agent 0 at (31.053, -5.250), 8.266 m/s, -2.721 m/s^2"));
   auto const faster = debug.run({"--edit", "behavior.desired_speed=12", files[0]});
   CHECK(faster.code == 1);

@@ -41,7 +41,9 @@ template <class Value>
 void note_moves(Moved& moved, std::string const& name, Value const& value, Value const& usual) {
   if constexpr (Described<Value>) {
     for_each_parameter<Value>([&](auto const& p) {
-      note_moves(moved, std::string(detail::struct_name<Value>()) + "." + p.name, value.*p.field, usual.*p.field);
+      std::string field = detail::struct_name<Value>();
+      field.append(".").append(p.name);
+      note_moves(moved, field, value.*p.field, usual.*p.field);
     });
   } else if constexpr (detail::Variant<Value>) {
     detail::with_alternative(value,
