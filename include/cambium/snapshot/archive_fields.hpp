@@ -268,8 +268,7 @@ void tagged(ArchiveTags* tags, char const* key, F const& f) {
 /// Writes described structs to an archive of Boost.Serialization.
 ///
 ///     struct:       once a type its version, number of fields and a hash of their names; then each field, or, where
-///     the
-///                   reader has a similar struct already, bits for the fields that differ, and these
+///                   the reader has a similar struct already, bits for the fields that differ, and these
 ///     alternative:  a number; with a new one the name
 ///     list:         the length; each element by what differs from the one before
 template <class Archive>
