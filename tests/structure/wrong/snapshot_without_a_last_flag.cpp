@@ -1,4 +1,4 @@
-// expect: leave out a field, or name the fields in another
+// expect: leave out a field, or name those of a Memory in another order
 #include <cambium/snapshot.hpp>
 #include <cambium/world.hpp>
 #include <cambium/dynamics.hpp>
