@@ -34,6 +34,9 @@ World thawed(World const& world, std::shared_ptr<Map const> const& map, Snapshot
   return other;
 }
 
+/// A memory may hold an empty one.
+static_assert(detail::describes_all<MemoryOf<HumanDriver<ConstantAcceleration>>>());
+
 /// Names of the memories' fields, and whether somebody's has ever been other than at first.
 using Moved = std::map<std::string, bool>;
 

@@ -148,23 +148,40 @@ template <Described T>
   return count;
 }
 
-/// What a field is, roughly: archives can be read wherever this is the same.
+/// A field's value as archives hold it.
 template <class Value>
-[[nodiscard]] constexpr char kind_of() {
-  if constexpr (Described<Value>)
-    return 's';
-  else if constexpr (std::is_same_v<Value, std::string>)
-    return 't';
-  else if constexpr (Variant<Value>)
-    return 'v';
-  else if constexpr (Optional<Value>)
-    return 'o';
-  else if constexpr (ParameterList<Value>)
-    return 'l';
-  else if constexpr (std::is_floating_point_v<Value>)
-    return sizeof(Value) == 8 ? 'd' : 'f';
+[[nodiscard]] constexpr auto stored(Value value) {
+  if constexpr (std::is_enum_v<Value>)
+    return static_cast<std::underlying_type_t<Value>>(value);
+  else if constexpr (std::is_same_v<Value, bool>)
+    return static_cast<unsigned char>(value);
   else
-    return 'i';
+    return value;
+}
+
+template <class Value>
+inline constexpr bool is_long_unsigned = std::is_unsigned_v<decltype(stored(Value{}))> && sizeof(Value) >= 4;
+
+/// Calls `add` with letters that say how archives hold a field.
+template <class Value>
+constexpr void add_kind(auto const& add) {
+  if constexpr (Described<Value>) {
+    add('s');
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    add('t');
+  } else if constexpr (Variant<Value>) {
+    add('v');
+  } else if constexpr (Optional<Value>) {
+    add('o');
+    add_kind<typename Value::value_type>(add);
+  } else if constexpr (ParameterList<Value>) {
+    add('l');
+    add_kind<ElementOf<Value>>(add);
+  } else {
+    bool const is_whole = is_long_unsigned<Value>;  // of any size
+    add(std::is_floating_point_v<Value> ? 'f' : is_whole ? 'w' : 'i');
+    add(is_whole ? '8' : static_cast<char>('0' + sizeof(Value)));
+  }
 }
 
 /// Hash of the names and kinds of a struct's first fields: who exchanges two of them shall not read the one as the
@@ -177,7 +194,7 @@ template <Described T>
   for_each_parameter<T>([&](auto const& p) {
     if (i++ >= count) return;
     for (char const* letter = p.name; *letter != '\0'; ++letter) add(*letter);
-    add(kind_of<std::remove_cvref_t<decltype(std::declval<T&>().*p.field)>>());
+    add_kind<std::remove_cvref_t<decltype(std::declval<T&>().*p.field)>>(add);
   });
   return static_cast<std::uint16_t>(hash ^ hash >> 16);
 }
@@ -223,20 +240,6 @@ template <class Value>
     for (auto const& element : elements_of(value)) bytes += sizeof(element) + bytes_in(element);
   return bytes;
 }
-
-/// A field's value as archives hold it.
-template <class Value>
-[[nodiscard]] constexpr auto stored(Value value) {
-  if constexpr (std::is_enum_v<Value>)
-    return static_cast<std::underlying_type_t<Value>>(value);
-  else if constexpr (std::is_same_v<Value, bool>)
-    return static_cast<unsigned char>(value);
-  else
-    return value;
-}
-
-template <class Value>
-inline constexpr bool is_long_unsigned = std::is_unsigned_v<decltype(stored(Value{}))> && sizeof(Value) >= 4;
 
 /// The nested tags of an archive that has some, for readers of the file.
 class ArchiveTags {
@@ -459,6 +462,7 @@ class FieldReader {
     std::string text;
     if (tags_ != nullptr) {
       get(key, text);
+      read_ += text.size();
       return text;
     }
     for (auto left = count(key); left > 0; --left) {
@@ -472,6 +476,12 @@ class FieldReader {
     return static_cast<std::size_t>(whole(key, ArchivedTypes::longest));
   }
 
+  void count_copied(std::size_t bytes) {
+    copied_ += bytes;
+    if (copied_ > ArchivedTypes::copied + ArchivedTypes::copied_per_byte * read_)
+      throw SnapshotError(where_, "is small and would fill the memory: most of it repeats itself",
+                          "it is damaged; if not, hold what repeats itself once");
+  }
   [[noreturn]] void damaged() const {
     throw SnapshotError(where_, "its content contradicts itself",
                         "restore the types that were saved; if these are the same, it is damaged");
@@ -512,8 +522,7 @@ class FieldReader {
     if (++depth_ > ArchivedTypes::deepest) damaged();
     auto const known = shape<T>();
     if (like != nullptr) {
-      copied_ += bytes_in(*like);
-      if (copied_ > ArchivedTypes::copied + ArchivedTypes::copied_per_byte * read_) damaged();
+      count_copied(bytes_in(*like));
       object = *like;
     }
     std::array<unsigned char, (field_count<T>() + 7) / 8> differs{};
@@ -613,6 +622,7 @@ class FieldReader {
   template <class List, class Element>
   void read_elements(List& list, std::size_t length, ParameterInfo const& info, std::span<Element const> known) {
     for (std::size_t i = 0; i < length; ++i) {
+      count_copied(sizeof(Element));
       Element element{};
       read("item", element, info, i < known.size() ? &known[i] : i > 0 ? &list[i - 1] : nullptr);
       list.push_back(std::move(element));

@@ -136,7 +136,7 @@ class NamedXmlOut : public boost::archive::xml_oarchive {
 
   void save_start(char const* key) {
     boost::archive::xml_oarchive::save_start(key);
-    is_named_ = true;
+    is_named_ = is_named_ || key != nullptr;  // Boost saves what an enum or a pointer holds without a key
   }
   void save_end(char const* key) {
     boost::archive::xml_oarchive::save_end(key);

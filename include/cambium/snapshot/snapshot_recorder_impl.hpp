@@ -16,6 +16,7 @@
 #include <string>
 #include <system_error>
 #include <thread>
+#include <tuple>
 #include <utility>
 
 #include "cambium/core/macros.hpp"
@@ -65,8 +66,10 @@ struct SnapshotRecorder::State {
       throw SnapshotError("'" + options.folder.string() + "'", "is no folder and cannot be made one",
                           "name a folder that you may write to");
     for (auto const& entry : std::filesystem::directory_iterator(options.folder, problem_there)) adopt(entry.path());
-    std::sort(files.begin(), files.end(), [](File const& a, File const& b) { return a.number < b.number; });
-    if (!files.empty()) number = files.back().number;
+    std::sort(files.begin(), files.end(), [](File const& a, File const& b) {
+      return std::tie(a.written, a.number) < std::tie(b.written, b.number);
+    });
+    for (auto const& file : files) number = std::max(number, file.number);
     if (options.in_background) thread = std::thread([this] { write_all(); });
   }
   ~State() {
@@ -146,9 +149,10 @@ struct SnapshotRecorder::State {
     try {
       auto const text = detail::with_head(snapshot.parts, snapshot.options);
       auto refused = write_new(text);
-      if (refused == std::errc::no_space_on_device && !files.empty()) {
-        remove_front();
-        refused = write_new(text);
+      if (refused == std::errc::no_space_on_device) {
+        bool has_room = false;
+        while (!has_room && files.size() > 1) has_room = remove_front();
+        if (has_room) refused = write_new(text);
       }
       if (refused) throw detail::cannot_write(path_of(number), refused);
       files.push_back({path_of(number), number, text.size(), std::filesystem::file_time_type::clock::now()});
@@ -174,9 +178,11 @@ struct SnapshotRecorder::State {
   [[nodiscard]] std::error_code write_new(std::string const& text) {
     while (true) {
       auto const path = path_of(++number);
+      std::error_code none;
+      if (std::filesystem::exists(path, none)) continue;
       auto part = path;
       part += ".part";
-      std::error_code none, refused = detail::write_text(part, "wbx", text);
+      auto refused = detail::write_text(part, "wbx", text);
       if (refused == std::errc::file_exists) continue;
       bool const is_taken = !refused && std::filesystem::exists(path, none);
       if (!refused && !is_taken) std::filesystem::rename(part, path, refused);
@@ -192,11 +198,13 @@ struct SnapshotRecorder::State {
             std::chrono::duration<double>(now - files.front().written).count() > options.longest_kept))
       remove_front();
   }
-  void remove_front() {
-    std::error_code ignored;  // a file that somebody else has removed
-    std::filesystem::remove(files.front().path, ignored);
+  /// Whether it was still there.
+  bool remove_front() {
+    std::error_code ignored;
+    bool const was_there = std::filesystem::remove(files.front().path, ignored);
     bytes -= files.front().bytes;
     files.pop_front();
+    return was_there;
   }
 };
 
