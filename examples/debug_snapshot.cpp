@@ -161,7 +161,8 @@ void print_verdict(cb::SnapshotInfo const& info, bool is_equal) {
                                      : "It came out otherwise than recorded.");
   if (!is_equal && info.result && info.build != cb::detail::build_tag())
     std::printf(
-        "It was recorded by %s; this program is of %s. Fused multiply-adds (-march=native) change the last bits.\n",
+        "It was recorded by a build with %s; this program was built with %s. Fused multiply-adds (-march=native) "
+        "change the last bits.\n",
         info.build.c_str(), cb::detail::build_tag().c_str());
 }
 
@@ -177,7 +178,7 @@ void print_unedited(examples::Thawed& as_recorded, examples::Thawed const& edite
   if (is_equal)
     std::printf("The edit changes nothing: it came out bit-equal to what was recorded.\n");
   else if (as_recorded.agents() == edited.agents())
-    std::printf("The edit moves no agent elsewhere in this cycle.\n");
+    std::printf("The edit changes no agent's motion in this cycle.\n");
 }
 
 /// Goes on until `settings` say, or the ego has left traffic.

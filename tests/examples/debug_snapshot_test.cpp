@@ -57,7 +57,7 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   CHECK(faster.code == 1);
   CHECK(has(faster.out, "\"desired_speed\": 12"));
   auto const same = debug.run({"--edit", "behavior.highest_acceleration=7.5", files[0]});
-  CHECK(has(same.out, "The edit moves no agent elsewhere in this cycle."));
+  CHECK(has(same.out, "The edit changes no agent's motion in this cycle."));
   auto const on = debug.run({files[0], "--into-simulation"});
   CHECK(on.code == 0);
   CHECK(has(on.out, "no collision"));

@@ -376,7 +376,7 @@ TEST_CASE("a number out of its range, a name that is no tag, and a file that wou
   Texts texts{std::vector<Texts::Text>(800, {std::string(100'000, 'x')})};
   auto const small = to_snapshot({}, texts);
   CHECK(small.size() < 110'000);
-  CHECK(message_of([&] { from_snapshot(small, "x", texts); }).find("x: is small and would fill the memory") == 0);
+  CHECK(message_of([&] { from_snapshot(small, "x", texts); }).find("x: expands to far more memory") == 0);
 }
 
 TEST_CASE("a map built with the defaults is known by its content alone") {

@@ -95,7 +95,7 @@ class ArchivedTypes {
  public:
   static constexpr std::size_t longest = std::size_t{1} << 24;  ///< elements of a list
   static constexpr int deepest = 200;                           ///< nested structs
-  /// What a reader copies: so much, and for each byte that it reads another so many [bytes].
+  /// How much a reader may copy: this, plus so much for each byte that it reads [bytes].
   static constexpr std::size_t copied = std::size_t{1} << 26, copied_per_byte = 64;
 
   struct Shape {
@@ -184,8 +184,7 @@ constexpr void add_kind(auto const& add) {
   }
 }
 
-/// Hash of the names and kinds of a struct's first fields: who exchanges two of them shall not read the one as the
-/// other.
+/// Hash of the names and kinds of a struct's first fields, so that two that swap places are not read as each other.
 template <Described T>
 [[nodiscard]] constexpr std::uint16_t hash_of_fields(std::size_t count) {
   std::uint32_t hash = 0x811c9dc5u;  // FNV-1a
@@ -479,8 +478,8 @@ class FieldReader {
   void count_copied(std::size_t bytes) {
     copied_ += bytes;
     if (copied_ > ArchivedTypes::copied + ArchivedTypes::copied_per_byte * read_)
-      throw SnapshotError(where_, "is small and would fill the memory: most of it repeats itself",
-                          "it is damaged; if not, hold what repeats itself once");
+      throw SnapshotError(where_, "expands to far more memory than a file of its size should",
+                          "take another copy; if this one is sound, store lists that repeat only once");
   }
   [[noreturn]] void damaged() const {
     throw SnapshotError(where_, "its content contradicts itself",
@@ -502,13 +501,12 @@ class FieldReader {
     if (version > version_of<T>())
       refuse("is of a newer version", "read it with the program that wrote it, or a newer one");
     if (fields > field_count<T>())
-      refuse(
-          "has more fields than in this program",
-          "read it with the program that wrote it, or a newer one; a field that is not used any more stays described");
+      refuse("has more fields than in this program",
+             "read it with the program that wrote it, or a newer one; never remove a field from a description");
     constexpr auto all_names = hash_of_fields<T>(field_count<T>());
     if (version == version_of<T>() && names != (fields == field_count<T>() ? all_names : hash_of_fields<T>(fields)))
       refuse("was saved with other fields, or in another order",
-             "append new fields; for a change of one's meaning count up the struct's `version`");
+             "append new fields; if one changes its name or meaning, increase the struct's `version`");
     constexpr bool upgrades = requires(T & object) { object.upgrade(0u); };
     if (version < version_of<T>() && !upgrades)
       refuse("is of version " + std::to_string(version) + ", and this program knows no way from there",

@@ -116,8 +116,8 @@ template <bool is_memory, class Slot>
     return check_described<is_memory, Slot>();
 }
 
-/// Hash of all that traffic knows of a map, and of what it was built with, unless that is the default: an option more
-/// leaves it as it is.
+/// Hash of all that traffic knows of a map, and of the options it was built with. Default options add nothing, so a
+/// new option leaves old hashes valid.
 [[nodiscard]] inline std::uint64_t hash_of_map(Map const& map) {
   auto const hash = map::content_hash(map);
   return same_bits(map.options(), {}) ? hash : hash ^ hash_parameters(map.options());
@@ -214,7 +214,7 @@ struct ArchivedWorld {
   }
 };
 
-/// Whether an agent in traffic is where it is now, to a second: an execution model may have times of its own.
+/// Whether a driving agent's state is of this time, within a second: execution models set it.
 template <class Record>
 [[nodiscard]] bool drives_now(Record const& record, double time) {
   return record.status != AgentStatus::driving || std::abs(record.state.time - time) <= 1.0;

@@ -129,7 +129,7 @@ class TextIn final : public boost::archive::polymorphic_text_iarchive {
   void load(float& value) override { read(value); }
 };
 
-/// Refuses a value without a name, which nobody could find again.
+/// Refuses values without a name: XML could not be read back.
 class NamedXmlOut : public boost::archive::xml_oarchive {
  public:
   using boost::archive::xml_oarchive::xml_oarchive;
