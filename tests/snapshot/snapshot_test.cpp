@@ -360,10 +360,31 @@ TEST_CASE("a world that contradicts itself is refused") {
   CHECK(refusal([](auto& parts) {
           parts.frame.agents[Slot{1}].state.time += 1e6;
         }).find("an agent drives at another time") != std::string::npos);
+  CHECK(refusal([](auto& parts) {
+          parts.agents[0].behavior = IdmClassic{.desired_speed = -1.0};
+        }).find("another: snapshot: agent 0: idm_classic.desired_speed") == 0);
+  CHECK(refusal([](auto& parts) {
+          parts.agents[1].shape.left = std::nan("");
+        }).find("another: snapshot: agent 1: shape.left") == 0);
+  CHECK(refusal([](auto& parts) {
+          parts.largest_shape.rear = -1.0;
+        }).find("another: snapshot: largest_shape: shape.rear") == 0);
   Sim thawed(map);
   from_snapshot(to_snapshot({}, world), "x", thawed);
   CHECK(thawed.roster().largest_shape == world.roster().largest_shape);
   CHECK(thawed.add_object(cone) == world.add_object(cone));
+}
+
+TEST_CASE("a controller that would act without end is refused") {
+  using Driven = World<BehaviorSet<IdmClassic>, StanleyExecution, SingleTrack>;
+  auto const map = support::straight_road(2, 500.0);
+  Driven world(map);
+  world.add({.position = {20, -1.75}, .speed = 3, .behavior = IdmClassic{}});
+  auto parts = detail::archived(world);
+  parts.agents[0].execution.actuation.period = 1e-30;
+  CHECK(message_of([&] {
+          static_cast<void>(detail::restored<Driven>(map, std::move(parts)));
+        }).find("another: snapshot: agent 0: stanley.actuation.period") == 0);
 }
 
 TEST_CASE("a number out of its range, a name that is no tag, and a file that would fill the memory are refused") {

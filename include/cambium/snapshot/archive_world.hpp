@@ -14,6 +14,7 @@
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
@@ -23,6 +24,7 @@
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/snapshot/archive_fields.hpp"
+#include "cambium/world/detail/check_described.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cambium {
@@ -355,12 +357,13 @@ requires requires(Archive& archive, void* id) { archive.template get_helper<Arch
 }
 
 /// The world of `parts` on `map`, with the `known` free corridors. Throws `SnapshotError` if they contradict each other
-/// or the map.
+/// or the map, and `ParameterError` for a model that could not enter.
 template <class World>
 [[nodiscard]] World restored(std::shared_ptr<Map const> const& map, ArchivedWorld<World>&& parts,
                              std::span<FreeRoad const> known = {}) {
   using Roster = typename World::RosterType;
   require_consistent(parts.map_hash == hash_of_map(*map), "a world in it was taken on another map");
+  check_parameters(parts.largest_shape, "snapshot: largest_shape");
   auto roster = std::make_shared<Roster>();
   roster->seed = parts.seed;
   std::vector<std::shared_ptr<map::RoadCorridor const>> roads;
@@ -381,6 +384,12 @@ template <class World>
     require_consistent(agent.road < roads.size(), "an agent has no road");
     require_consistent(drives_now(record, parts.frame.time), "an agent drives at another time");
     require_consistent(i == 0 || parts.agents[i - 1].id < agent.id, "its agents are not sorted");
+    auto const where = "snapshot: agent " + to_string(agent.id);
+    check_parameters(agent.shape, where);
+    check_if_described(agent.behavior, where);
+    check_if_described(agent.execution, where);
+    check_if_described(agent.dynamics, where);
+    check_if_described(agent.observer, where);
     place_on(*roads[agent.road], agent.behavior, record);
     auto const lane = roads[agent.road]->corridors[record.lane.corridor].pieces[record.lane.piece].lane;
     static_cast<void>(entering_goal(*map, agent.goal, lane, "snapshot"));
