@@ -176,6 +176,22 @@ TEST_CASE("recorders that share a folder lose nothing") {
   for (auto const& file : files_in(where)) CHECK_NOTHROW(static_cast<void>(info_of(file)));
 }
 
+TEST_CASE("flush waits for the file that is being written") {
+  auto const where = folder("flush");
+  auto world = one_car();
+  SnapshotRecorder recorder({.folder = where,
+                             .snapshot = {.map_text = std::string(std::size_t{1} << 25, 'x')},
+                             .each_cycle = true,
+                             .in_background = true});
+  for (std::size_t i = 1; i <= 3; ++i) {
+    REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+    while (files_in(where).size() < i) std::this_thread::yield();  // it has begun
+    recorder.flush();
+    CHECK(recorder.written() == i);
+  }
+  CHECK(files_in(where).back() == where / "00000003.snapshot");
+}
+
 TEST_CASE("files of others in its folder stay as they are; what an earlier recorder left unfinished goes") {
   auto const where = folder("shared");
   fs::create_directories(where);

@@ -519,6 +519,20 @@ TEST_CASE("a struct without a description is refused when it is saved") {
         std::string::npos);
 }
 
+TEST_CASE("goals in goals are saved as deep as they can be read") {
+  auto const thaw = [](int depth) {
+    Goal goal = NoGoal{};
+    for (int i = 0; i < depth; ++i) goal = AllGoals{{goal}};
+    Sim world(support::straight_road(1, 300.0));
+    world.add({.position = {20, -1.75}, .speed = 3, .behavior = IdmClassic{}, .goal = goal});
+    Sim thawed(world.shared_map());
+    from_snapshot(to_snapshot({}, world), "x", thawed);
+    return snapshot_hash(thawed) == snapshot_hash(world);
+  };
+  CHECK(thaw(190));
+  CHECK(message_of([&] { thaw(200); }).find("lies within more than 200 others") != std::string::npos);
+}
+
 TEST_CASE("a memory that holds NaN thaws as it is") {
   using Driven = World<BehaviorSet<ExternalInput>, InterpolateExecution, SingleTrack>;
   Driven world(support::straight_road(1, 300.0));

@@ -121,17 +121,27 @@ class FieldWriter {
     for (char const letter : text) put(key, letter);
   }
 
+  void write_shape(KnownStruct const& type) {
+    if (types_.shape(type) != nullptr) return;
+    put("fields", static_cast<unsigned char>(type.fields + (type.version > 0 ? 128 : 0)));
+    if (type.version > 0) put_whole("version", type.version);
+    put("names", type.hashes[type.fields]);
+    types_.add({&type, type.version, type.fields});
+  }
+
+  [[noreturn]] static void refuse_depth(char const* name) {
+    throw SnapshotError("snapshot",
+                        std::string("a struct '") + name + "' lies within more than " +
+                            std::to_string(ArchivedTypes::deepest) + " others",
+                        "nest fewer of them");
+  }
+
   template <Described T>
   void write_struct(T const& object, T const* like) {
     constexpr std::size_t fields = field_count<T>();
     static_assert(fields < 128, "cambium: a struct with more than 127 fields is too large for snapshots; nest some");
-    if (types_.shape(&type_key<T>) == nullptr) {
-      put("fields", static_cast<unsigned char>(fields + (version_of<T>() > 0 ? 128 : 0)));
-      if (version_of<T>() > 0) put_whole("version", version_of<T>());
-      constexpr std::uint16_t names = hash_of_fields<T>(fields);
-      put("names", names);
-      types_.add(ArchivedTypes::Shape{&type_key<T>, version_of<T>(), fields});
-    }
+    if (++depth_ > ArchivedTypes::deepest) refuse_depth(struct_name<T>());
+    write_shape(known_struct<T>);
     std::array<unsigned char, (fields + 7) / 8> differs{};
     std::size_t i = 0;
     if (like != nullptr) {
@@ -150,6 +160,7 @@ class FieldWriter {
         write(p.name, object.*p.field, like != nullptr ? &(like->*p.field) : nullptr);
       ++i;
     });
+    --depth_;
   }
 
   template <class... Models>
@@ -186,6 +197,7 @@ class FieldWriter {
   Archive& archive_;
   ArchiveTags* tags_ = tags_of(archive_);
   ArchivedTypes types_;
+  int depth_ = 0;
 };
 
 /// Reads what a `FieldWriter` has written. Throws `SnapshotError` where the content contradicts itself or is newer than
@@ -233,8 +245,7 @@ class FieldReader {
       // It may be an index. A range of one value is none: `{}`.
       if (std::is_integral_v<decltype(stored(value))> && info.range.low < info.range.high &&
           !ParameterValue(value).in(info.range))
-        throw ParameterError(where_ + ": " + key, "is " + value_text(info, ParameterValue(value)),
-                             "it lies outside of " + range_text(info) + ", the range of its description");
+        refuse_value(key, info, ParameterValue(value));
     }
   }
 
@@ -276,44 +287,45 @@ class FieldReader {
       throw SnapshotError(where_, "expands to far more memory than a file of its size should",
                           "take another copy; if this one is sound, store lists that repeat only once");
   }
+  [[noreturn]] void refuse_value(char const* key, ParameterInfo const& info, ParameterValue const& value) const {
+    throw ParameterError(where_ + ": " + key, "is " + value_text(info, value),
+                         "it lies outside of " + range_text(info) + ", the range of its description");
+  }
   [[noreturn]] void damaged() const {
     throw SnapshotError(where_, "its content contradicts itself",
                         "restore the types that were saved; if these are the same, it is damaged");
   }
 
-  template <Described T>
-  [[nodiscard]] ArchivedTypes::Shape shape() {
-    if (auto const* known = types_.shape(&type_key<T>)) return *known;
+  [[nodiscard]] ArchivedTypes::Shape read_shape(KnownStruct const& type) {
+    if (auto const* known = types_.shape(type)) return *known;
     unsigned char told = 0;
     get("fields", told);
     std::size_t const fields = told % 128;
     auto const version = told < 128 ? 0u : static_cast<unsigned>(count("version"));
     std::uint16_t names = 0;
     get("names", names);
-    auto const refuse = [this](std::string const& what, char const* remedy) {
-      throw SnapshotError(where_, std::string("its struct '") + struct_name<T>() + "' " + what, remedy);
+    auto const refuse = [&](std::string const& what, char const* remedy) {
+      throw SnapshotError(where_, std::string("its struct '") + type.name + "' " + what, remedy);
     };
-    if (version > version_of<T>())
+    if (version > type.version)
       refuse("is of a newer version", "read it with the program that wrote it, or a newer one");
-    if (fields > field_count<T>())
+    if (fields > type.fields)
       refuse("has more fields than in this program",
              "read it with the program that wrote it, or a newer one; never remove a field from a description");
-    constexpr auto all_names = hash_of_fields<T>(field_count<T>());
-    if (version == version_of<T>() && names != (fields == field_count<T>() ? all_names : hash_of_fields<T>(fields)))
+    if (version == type.version && names != type.hashes[fields])
       refuse("was saved with other fields, or in another order",
              "append new fields; if one changes its name or meaning, increase the struct's `version`");
-    constexpr bool upgrades = requires(T & object) { object.upgrade(0u); };
-    if (version < version_of<T>() && !upgrades)
+    if (version < type.version && !type.upgrades)
       refuse("is of version " + std::to_string(version) + ", and this program knows no way from there",
              "give the struct a member `upgrade(unsigned from)`, or read it with an older program");
-    types_.add(ArchivedTypes::Shape{&type_key<T>, version, fields});
-    return {&type_key<T>, version, fields};
+    types_.add({&type, version, fields});
+    return {&type, version, fields};
   }
 
   template <Described T>
   void read_struct(T& object, T const* like) {
     if (++depth_ > ArchivedTypes::deepest) damaged();
-    auto const known = shape<T>();
+    auto const known = read_shape(known_struct<T>);
     if (like != nullptr) {
       count_copied(bytes_in(*like));
       object = *like;
@@ -356,21 +368,20 @@ class FieldReader {
       auto const name = text("name");
       std::size_t index = 0;
       while (index < names.size() && (names[index] == nullptr || alternative_name(names, index) != name)) ++index;
-      if (index == names.size())
-        throw SnapshotError(
-            where_, "holds the model '" + name + "', which is not among those of this program (" + listed(names) + ")",
-            "read it with the type that was saved");
+      if (index == names.size()) refuse_model(name, names);
       types_.alternatives().push_back({key, index});
     }
     if (types_.alternatives()[number].variant != key) damaged();
     read_chosen(types_.alternatives()[number].index, value, number);
   }
 
-  [[nodiscard]] static std::string listed(std::span<char const* const> names) {
-    std::string text;
+  [[noreturn]] void refuse_model(std::string const& name, std::span<char const* const> names) const {
+    std::string ours;
     for (std::size_t i = 0; i < names.size(); ++i)
-      if (names[i] != nullptr) text += (text.empty() ? "" : ", ") + alternative_name(names, i);
-    return text;
+      if (names[i] != nullptr) ours += (ours.empty() ? "" : ", ") + alternative_name(names, i);
+    throw SnapshotError(where_,
+                        "holds the model '" + name + "', which is not among those of this program (" + ours + ")",
+                        "read it with the type that was saved");
   }
 
   template <std::size_t i = 0, class... Models>
@@ -429,7 +440,7 @@ class FieldReader {
     if constexpr (Described<Value>) {
       for_each_parameter<Value>([&](auto const& p) { upgrade(value.*p.field); });
       if constexpr (requires { value.upgrade(0u); })
-        if (auto const* shape = types_.shape(&type_key<Value>);
+        if (auto const* shape = types_.shape(known_struct<Value>);
             shape != nullptr && shape->version < version_of<Value>())
           value.upgrade(shape->version);
       if constexpr (requires { value.check(where_); }) value.check(where_);  // see read_struct

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -149,7 +150,7 @@ struct SnapshotRecorder::State {
     try {
       auto const text = detail::with_head(snapshot.parts, snapshot.options);
       auto refused = write_new(text);
-      if (refused == std::errc::no_space_on_device) {
+      if (is_full(refused)) {
         bool has_room = false;
         while (!has_room && files.size() > 1) has_room = remove_front();
         if (has_room) refused = write_new(text);
@@ -165,6 +166,14 @@ struct SnapshotRecorder::State {
     std::lock_guard const lock(mutex);
     ++written;
     last_file = files.back().path;
+  }
+
+  /// The disk has no room, or its owner has used up his share.
+  [[nodiscard]] static bool is_full(std::error_code const& refused) {
+#ifdef EDQUOT
+    if (refused == std::error_code(EDQUOT, std::generic_category())) return true;
+#endif
+    return refused == std::errc::no_space_on_device;
   }
 
   [[nodiscard]] std::filesystem::path path_of(std::uint64_t file) const {

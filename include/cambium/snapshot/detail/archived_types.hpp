@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -74,53 +75,6 @@ template <class... Models>
   return same;
 }
 
-template <class T>
-inline constexpr char type_key{};  ///< its address stands for the type
-
-/// The types that an archive has described so far. Writer and reader hold the same.
-class ArchivedTypes {
- public:
-  static constexpr std::size_t longest = std::size_t{1} << 24;  ///< elements of a list
-  static constexpr int deepest = 200;                           ///< nested structs
-  /// How much a reader may copy: this, plus so much for each byte that it reads [bytes].
-  static constexpr std::size_t copied = std::size_t{1} << 26, copied_per_byte = 64;
-
-  struct Shape {
-    void const* type;
-    unsigned version;
-    std::size_t fields;  ///< number of fields in the archive, the first ones of the description
-  };
-  struct Alternative {
-    void const* variant;
-    std::size_t index;
-    std::shared_ptr<void const> last = {};  ///< the latest struct of it
-  };
-
-  [[nodiscard]] Shape const* shape(void const* type) const {
-    for (auto const& shape : shapes_)
-      if (shape.type == type) return &shape;
-    return nullptr;
-  }
-  void add(Shape const& shape) { shapes_.push_back(shape); }
-
-  /// The number of an alternative among those told of; how many these are if it is none of them.
-  [[nodiscard]] std::size_t number_of(void const* variant, std::size_t index) const {
-    std::size_t i = 0;
-    while (i < alternatives_.size() && !(alternatives_[i].variant == variant && alternatives_[i].index == index)) ++i;
-    return i;
-  }
-  [[nodiscard]] std::vector<Alternative>& alternatives() { return alternatives_; }
-
-  ArchivedTypes() {
-    shapes_.reserve(64);
-    alternatives_.reserve(16);
-  }
-
- private:
-  std::vector<Shape> shapes_;
-  std::vector<Alternative> alternatives_;
-};
-
 /// Number of a struct's fields.
 template <Described T>
 [[nodiscard]] constexpr std::size_t field_count() {
@@ -165,19 +119,86 @@ constexpr void add_kind(auto const& add) {
   }
 }
 
-/// Hash of the names and kinds of a struct's first fields, so that two that swap places are not read as each other.
+/// Hashes of the names and kinds of a struct's first fields, from none to all, so that two that swap places are not
+/// read as each other.
 template <Described T>
-[[nodiscard]] constexpr std::uint16_t hash_of_fields(std::size_t count) {
+[[nodiscard]] constexpr std::array<std::uint16_t, field_count<T>() + 1> hashes_of_fields() {
+  std::array<std::uint16_t, field_count<T>() + 1> hashes{};
   std::uint32_t hash = 0x811c9dc5u;  // FNV-1a
   auto const add = [&hash](char letter) { hash = (hash ^ static_cast<unsigned char>(letter)) * 0x01000193u; };
   std::size_t i = 0;
   for_each_parameter<T>([&](auto const& p) {
-    if (i++ >= count) return;
+    hashes[i++] = static_cast<std::uint16_t>(hash ^ hash >> 16);
     for (char const* letter = p.name; *letter != '\0'; ++letter) add(*letter);
     add_kind<std::remove_cvref_t<decltype(std::declval<T&>().*p.field)>>(add);
   });
-  return static_cast<std::uint16_t>(hash ^ hash >> 16);
+  hashes[i] = static_cast<std::uint16_t>(hash ^ hash >> 16);
+  return hashes;
 }
+template <Described T>
+inline constexpr auto field_hashes = hashes_of_fields<T>();
+
+/// What this program knows of a described struct.
+struct KnownStruct {
+  char const* name;
+  unsigned version;
+  std::size_t fields;           ///< how many it has
+  std::uint16_t const* hashes;  ///< see `hashes_of_fields`
+  bool upgrades;                ///< from older versions
+};
+template <Described T>
+inline constexpr KnownStruct known_struct{struct_name<T>(), version_of<T>(), field_count<T>(), field_hashes<T>.data(),
+                                          requires(T& object){object.upgrade(0u);
+}  // namespace cambium::detail
+}
+;
+
+template <class T>
+inline constexpr char type_key{};  ///< its address stands for the type
+
+/// The types that an archive has described so far. Writer and reader hold the same.
+class ArchivedTypes {
+ public:
+  static constexpr std::size_t longest = std::size_t{1} << 24;  ///< elements of a list
+  static constexpr int deepest = 200;                           ///< nested structs
+  /// How much a reader may copy: this, plus so much for each byte that it reads [bytes].
+  static constexpr std::size_t copied = std::size_t{1} << 26, copied_per_byte = 64;
+
+  struct Shape {
+    KnownStruct const* type;
+    unsigned version;
+    std::size_t fields;  ///< number of fields in the archive, the first ones of the description
+  };
+  struct Alternative {
+    void const* variant;
+    std::size_t index;
+    std::shared_ptr<void const> last = {};  ///< the latest struct of it
+  };
+
+  [[nodiscard]] Shape const* shape(KnownStruct const& type) const {
+    for (auto const& shape : shapes_)
+      if (shape.type == &type) return &shape;
+    return nullptr;
+  }
+  void add(Shape const& shape) { shapes_.push_back(shape); }
+
+  /// The number of an alternative among those told of; how many these are if it is none of them.
+  [[nodiscard]] std::size_t number_of(void const* variant, std::size_t index) const {
+    std::size_t i = 0;
+    while (i < alternatives_.size() && !(alternatives_[i].variant == variant && alternatives_[i].index == index)) ++i;
+    return i;
+  }
+  [[nodiscard]] std::vector<Alternative>& alternatives() { return alternatives_; }
+
+  ArchivedTypes() {
+    shapes_.reserve(64);
+    alternatives_.reserve(16);
+  }
+
+ private:
+  std::vector<Shape> shapes_;
+  std::vector<Alternative> alternatives_;
+};
 
 template <class Value>
 [[nodiscard]] constexpr bool has_list();
