@@ -24,7 +24,6 @@
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/snapshot/archive_fields.hpp"
-#include "cambium/world/detail/check_described.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cambium {
