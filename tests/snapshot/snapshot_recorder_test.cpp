@@ -113,9 +113,11 @@ TEST_CASE("exceptions, invalid steps, slow cycles and watches are reasons") {
   CHECK(info_of(where / "00000004.snapshot").note.find("it took ") == 0);  // numbers go on
   recorder.begin(world);
   recorder.trigger("in parts");
+  for (int i = 0; i < 100; ++i) recorder.trigger(std::string(700, 'x'));
   recorder.end();
   CHECK(files_in(where).size() == 5);  // the file of another recorder there stays
-  CHECK(info_of(where / "00000005.snapshot").note == "in parts");
+  CHECK(info_of(where / "00000005.snapshot").note.find("in parts; xxx") == 0);
+  CHECK(info_of(where / "00000005.snapshot").note.size() < 2100);
 }
 
 TEST_CASE("a watch that throws is a reason; after an exception of the cycle none is asked") {
@@ -227,9 +229,16 @@ TEST_CASE("each cycle is kept in a ring that number, bytes and age bound") {
     CHECK(files_in(where).back() == where / "00000041.snapshot");
     CHECK(files_in(where).size() == 3);
   }
+  fs::last_write_time(where / "00000041.snapshot", fs::file_time_type::clock::now() - std::chrono::minutes(2));
+  {
+    SnapshotRecorder recorder({.folder = where, .each_cycle = true, .most_files = 3});
+    REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+    CHECK_FALSE(fs::exists(where / "00000041.snapshot"));  // the oldest, whatever its number
+    CHECK(fs::exists(where / "00000040.snapshot"));
+  }
   SnapshotRecorder recorder({.folder = where, .each_cycle = true, .longest_kept = 0.0});
   REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
-  CHECK(files_in(where) == std::vector{where / "00000042.snapshot"});
+  CHECK(files_in(where) == std::vector{where / "00000043.snapshot"});
 }
 
 TEST_CASE("a queue that is full is counted, and the cycles go on") {
@@ -326,6 +335,11 @@ TEST_CASE("on a full disk the oldest file makes room; what finds none is counted
     for (int i = 0; i < 20; ++i) static_cast<void>(recorder.run([&] { return world.step(0.2); }, world));
     bool const has_newest = recorder.written() == 20 && recorder.failed() == 0 && files_in(where).size() == 4 &&
                             info_of(recorder.last_file()).result == snapshot_hash(world);
+    auto const old = files_in(where);
+    fs::remove(old[0]);  // so the next one has to go instead
+    std::ofstream(where / "in its place") << std::string(4096, 'x');
+    static_cast<void>(recorder.run([&] { return world.step(0.2); }, world));
+    bool const has_next = recorder.written() == 21 && !fs::exists(old[1]) && fs::exists(old[2]);
     for (auto const& file : files_in(where)) fs::remove(file);
     std::ofstream(where / "of somebody else") << std::string(16'384, 'x');
     SnapshotRecorder crowded({.folder = where, .each_cycle = true});
@@ -333,7 +347,7 @@ TEST_CASE("on a full disk the oldest file makes room; what finds none is counted
     bool const is_counted =
         crowded.failed() == 1 && crowded.written() == 0 &&
         crowded.problem().find("00000001.snapshot: cannot be written (No space left") != std::string::npos;
-    _exit(has_newest && drives && is_counted ? passed : failed);
+    _exit(has_newest && has_next && drives && is_counted ? passed : failed);
   }
   int status = 0;
   waitpid(child, &status, 0);

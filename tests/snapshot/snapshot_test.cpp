@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include <boost/container/static_vector.hpp>
 #include <boost/serialization/vector.hpp>
 
 #include "cambium/cambium.hpp"
@@ -117,6 +118,33 @@ struct Upgraded : After {
   }
   void upgrade(unsigned from) {
     if (from < 2) a *= 1000.0;
+  }
+};
+template <class Value>
+struct Flag {
+  Value value{};
+  static constexpr char const* name = "flag";
+  static constexpr auto parameters() { return parameter_list(parameter("value", &Flag::value, "-", {}, "")); }
+};
+/// In percent, then in tenths: another version, with another range.
+template <bool in_tenths>
+struct Share {
+  static constexpr unsigned version = in_tenths ? 1 : 0;
+  int share = 0;
+  static constexpr char const* name = "share";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("share", &Share::share, "-", Range{0, in_tenths ? 10 : 100}, "of all"));
+  }
+  void upgrade(unsigned) { share /= 10; }
+};
+template <bool in_tenths>
+struct Shares {
+  std::vector<Share<in_tenths>> one;
+  std::shared_ptr<std::vector<Share<in_tenths>> const> shared;
+  static constexpr char const* name = "shares";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("one", &Shares::one, "-", {}, ""),
+                          parameter("shared", &Shares::shared, "-", {}, ""));
   }
 };
 /// 0: as it was saved; 1: two fields have changed places; 2: one is of another kind.
@@ -309,6 +337,21 @@ TEST_CASE("a field that is added travels, and is at its default in what was save
   }
 }
 
+TEST_CASE("ranges count after the upgrade, in lists of each kind") {
+  for (auto const format : {SnapshotFormat::binary, SnapshotFormat::text, SnapshotFormat::xml}) {
+    auto const list = std::make_shared<std::vector<Share<false>> const>(std::vector<Share<false>>{{70}, {90}});
+    Shares<true> now;
+    from_snapshot(to_snapshot({.format = format}, Shares<false>{*list, list}), "x", now);
+    REQUIRE(now.one.size() == 2);
+    CHECK(now.one[0].share == 7);
+    REQUIRE(now.shared->size() == 2);
+    CHECK((*now.shared)[1].share == 9);
+    auto const wrong = to_snapshot({.format = format}, Shares<false>{{{120}}, list});
+    CHECK(message_of([&] { from_snapshot(wrong, "x", now); }).find("x: share: is 12") == 0);
+    CHECK(now.one[0].share == 7);
+  }
+}
+
 TEST_CASE("two fields that changed places are refused, as is one of another kind") {
   for (auto const format : {SnapshotFormat::binary, SnapshotFormat::text, SnapshotFormat::xml}) {
     auto const bytes = to_snapshot({.format = format}, Ordered<0>{1.0, 2.0, 3});
@@ -398,6 +441,22 @@ TEST_CASE("a number out of its range, a name that is no tag, and a file that wou
   auto const small = to_snapshot({}, texts);
   CHECK(small.size() < 110'000);
   CHECK(message_of([&] { from_snapshot(small, "x", texts); }).find("x: expands to far more memory") == 0);
+}
+
+TEST_CASE("a switch that is neither off nor on, and a list that is too long, are refused") {
+  Flag<bool> flag;
+  CHECK(message_of([&] {
+          from_snapshot(to_snapshot({}, Flag<std::uint8_t>{7}), "x", flag);
+        }).find("x: its content contradicts itself") == 0);
+  CHECK_FALSE(flag.value);
+  Flag<std::array<int, 2>> pair;
+  CHECK(message_of([&] {
+          from_snapshot(to_snapshot({}, Flag<std::array<int, 3>>{{7, 8, 9}}), "x", pair);
+        }).find("x: its content contradicts itself") == 0);
+  Flag<boost::container::static_vector<int, 2>> few;
+  CHECK(message_of([&] {
+          from_snapshot(to_snapshot({}, Flag<std::vector<int>>{{7, 8, 9}}), "x", few);
+        }).find("x: its content contradicts itself") == 0);
 }
 
 TEST_CASE("a map built with the defaults is known by its content alone") {

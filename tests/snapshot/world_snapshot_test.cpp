@@ -18,6 +18,7 @@
 #include "cambium/map/opendrive.hpp"
 #include "cambium/planner.hpp"
 #include "support/maps.hpp"
+#include "support/spoil.hpp"
 
 using namespace cambium;
 
@@ -262,6 +263,21 @@ TEST_CASE("every execution, vehicle and observer model goes on bit by bit") {
   };
   goes_on(SingleTrackSteering{});
   goes_on(TripleIntegrator{});
+}
+
+TEST_CASE("numbers that no world has are refused, others can be driven on with") {
+  auto const map = support::own_map("merging.xodr");
+  Sim world(map, {.seed = 3});
+  for (std::size_t i = 0; i < 19; ++i)
+    world.add({.position = {20.0 + 10.0 * static_cast<double>(i), i % 2 == 0 ? -1.75 : -5.25},
+               .speed = 8.0,
+               .behavior = one_of<Sim::Behavior>(i),
+               .goal = AllGoals{{StateLimits{}, ReachLaneEnd{}}}});
+  world.add_object(geometry::Polygon({{150, -9}, {152, -9}, {152, -4}}));
+  for (int i = 0; i < 3; ++i) REQUIRE(world.step(0.2));
+  auto const spoilt = support::spoil_numbers(world, 1500, 2, [](std::string const& what) { FAIL_CHECK(what); });
+  CHECK(spoilt.refused > 300);
+  CHECK(spoilt.worlds > 300);
 }
 
 TEST_CASE("a junction goes on with its lights, goals, objects, and people on ways of their own") {

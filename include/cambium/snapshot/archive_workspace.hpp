@@ -213,7 +213,7 @@ void place_on_roads(Frame& frame, Roster const& roster) {
   require_consistent(frame.agents.size() == roster.agents.size() && frame.roster_revision == roster.revision,
                      "a state of a tree has other agents than its world");
   for (Slot slot{}; index_of(slot) < frame.agents.size(); ++slot)
-    place_on(*roster.agents[slot].road, roster.agents[slot].behavior, frame.agents[slot]);
+    place_on(*roster.agents[slot].road, roster.agents[slot].behavior, frame.agents[slot], frame.time);
 }
 
 template <class Search, class Domain>

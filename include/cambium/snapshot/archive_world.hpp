@@ -215,10 +215,32 @@ struct ArchivedWorld {
   }
 };
 
-/// Whether a driving agent's state is of this time, within a second: execution models set it.
+/// Whether all real numbers of `value` are finite.
+template <class Value>
+[[nodiscard]] bool all_finite(Value const& value) {
+  bool all = true;
+  if constexpr (std::is_floating_point_v<Value>) {
+    return std::isfinite(value);
+  } else if constexpr (Described<Value>) {
+    for_each_parameter<Value>([&](auto const& p) { all = all && all_finite(value.*p.field); });
+  } else if constexpr (ParameterList<Value>) {
+    for (auto const& element : elements_of(value)) all = all && all_finite(element);
+  }
+  return all;
+}
+
+/// Why no agent of a world at `time` [s] can have this record; null if one can. What it remembers may be anything: a
+/// planner may have gone wrong.
 template <class Record>
-[[nodiscard]] bool drives_now(Record const& record, double time) {
-  return record.status != AgentStatus::driving || std::abs(record.state.time - time) <= 1.0;
+[[nodiscard]] char const* flaw_of(Record const& record, double time) {
+  constexpr double farthest = 1e9;  // [m]
+  if (!all_finite(record.state) || !all_finite(record.lane) || !all_finite(record.action) || !all_finite(record.past))
+    return "has a state, place or action that is not finite";
+  if (std::abs(record.state.x) > farthest || std::abs(record.state.y) > farthest) return "is beyond 1e9 m";
+  // Execution models set the time of a state.
+  if (record.status == AgentStatus::driving && std::abs(record.state.time - time) > 1.0)
+    return "drives at another time than its world";
+  return nullptr;
 }
 
 /// What the archive holds of a world. Throws `SnapshotError` if a road was not built by this library.
@@ -253,9 +275,9 @@ template <class World>
   parts.agents.reserve(roster.agents.size());
   for (Slot slot{}; index_of(slot) < roster.agents.size(); ++slot) {
     auto const& agent = roster.agents[slot];
-    if (!drives_now(parts.frame.agents[slot], parts.frame.time))
-      throw SnapshotError("snapshot", "agent " + to_string(agent.id) + " drives at another time than its world",
-                          "let its execution model return states of the end of the step");
+    if (auto const* const flaw = flaw_of(parts.frame.agents[slot], parts.frame.time))
+      throw SnapshotError("snapshot", "agent " + to_string(agent.id) + " " + flaw,
+                          "let its execution model return finite states of the end of the step");
     auto const place = std::find(roads.begin(), roads.end(), agent.road.get());
     auto const number = static_cast<std::uint32_t>(place - roads.begin());
     if (place == roads.end()) {
@@ -299,9 +321,11 @@ template <class Value>
   return all;
 }
 
-/// Checks the record of an agent that behaves as `behavior` on `road`, and numbers its place.
+/// Checks the record of an agent that behaves as `behavior` on `road` in a world at `time` [s], and numbers its place.
 template <class Record, class Behavior>
-void place_on(map::RoadCorridor const& road, Behavior const& behavior, Record& record) {
+void place_on(map::RoadCorridor const& road, Behavior const& behavior, Record& record, double time) {
+  if (auto const* const flaw = flaw_of(record, time))
+    require_consistent(false, (std::string("an agent ") + flaw).c_str());
   require_consistent(is_on(road, record.lane), "an agent is on no lane of its road");
   auto const& pieces = road.corridors[record.lane.corridor].pieces;
   record.lane.index = map::lane_coordinate(pieces[record.lane.piece], record.lane.s);
@@ -372,24 +396,26 @@ template <class World>
   }
   for (auto& object : parts.objects) {
     check_outline(object.outline);
-    require_consistent(static_cast<std::uint32_t>(object.id) >= roster->next_object_id, "its objects are not sorted");
+    require_consistent(is_valid(object.id) && static_cast<std::uint32_t>(object.id) >= roster->next_object_id,
+                       "its objects are not sorted");
     roster->next_object_id = static_cast<std::uint32_t>(object.id);
     static_cast<void>(enter_object(*map, *roster, std::move(object.outline)));
   }
+  require_consistent(std::isfinite(parts.frame.time), "its time is not finite");
   require_consistent(parts.agents.size() == parts.frame.agents.size(), "it has more agents than places, or fewer");
   for (std::size_t i = 0; i < parts.agents.size(); ++i) {
     auto& agent = parts.agents[i];
     auto& record = parts.frame.agents[i];
     require_consistent(agent.road < roads.size(), "an agent has no road");
-    require_consistent(drives_now(record, parts.frame.time), "an agent drives at another time");
     require_consistent(i == 0 || parts.agents[i - 1].id < agent.id, "its agents are not sorted");
     auto const where = "snapshot: agent " + to_string(agent.id);
+    check_id(agent.id, false, where);
     check_parameters(agent.shape, where);
     check_if_described(agent.behavior, where);
     check_if_described(agent.execution, where);
     check_if_described(agent.dynamics, where);
     check_if_described(agent.observer, where);
-    place_on(*roads[agent.road], agent.behavior, record);
+    place_on(*roads[agent.road], agent.behavior, record, parts.frame.time);
     auto const lane = roads[agent.road]->corridors[record.lane.corridor].pieces[record.lane.piece].lane;
     static_cast<void>(entering_goal(*map, agent.goal, lane, "snapshot"));
     static_cast<void>(roster->insert({agent.id, agent.shape, roads[agent.road], std::move(agent.behavior),

@@ -62,11 +62,16 @@ class FieldReader {
         value = static_cast<Value>(held);
         if (std::is_same_v<Value, bool> && held > stored(true)) damaged();
       }
-      // It may be an index. A range of one value is none: `{}`.
-      if (std::is_integral_v<decltype(stored(value))> && info.range.low < info.range.high &&
-          !ParameterValue(value).in(info.range))
-        refuse_value(key, info, ParameterValue(value));
+      if (!is_old_) check_range(value, info);
     }
+  }
+
+  /// Checks a whole number: it may be an index. A range of one value is none: `{}`.
+  template <class Value>
+  void check_range(Value const& value, ParameterInfo const& info) const {
+    if (std::is_integral_v<decltype(stored(value))> && info.range.low < info.range.high &&
+        !ParameterValue(value).in(info.range))
+      refuse_value(info, ParameterValue(value));
   }
 
   template <class Value>
@@ -107,8 +112,8 @@ class FieldReader {
       throw SnapshotError(where_, "expands to far more memory than a file of its size should",
                           "take another copy; if this one is sound, store lists that repeat only once");
   }
-  [[noreturn]] void refuse_value(char const* key, ParameterInfo const& info, ParameterValue const& value) const {
-    throw ParameterError(where_ + ": " + key, "is " + value_text(info, value),
+  [[noreturn]] void refuse_value(ParameterInfo const& info, ParameterValue const& value) const {
+    throw ParameterError(where_ + ": " + info.name, "is " + value_text(info, value),
                          "it lies outside of " + range_text(info) + ", the range of its description");
   }
   [[noreturn]] void damaged() const {
@@ -154,6 +159,7 @@ class FieldReader {
     differs.fill(0xff);
     if (like != nullptr)
       for (std::size_t k = 0; k < (known.fields + 7) / 8 && k < differs.size(); ++k) get("differs", differs[k]);
+    is_old_ = is_old_ || known.version < version_of<T>();  // from here on, `upgrade` checks
     std::size_t i = 0;
     for_each_parameter<T>([&](auto const& p) {
       if (i < known.fields && (differs[i / 8] >> i % 8 & 1u) != 0)
@@ -162,7 +168,6 @@ class FieldReader {
         set_default(object, p);
       ++i;
     });
-    is_old_ = is_old_ || known.version < version_of<T>();
     if constexpr (requires { object.check(where_); })
       if (!is_old_) object.check(where_);
     --depth_;
@@ -228,19 +233,27 @@ class FieldReader {
     if constexpr (requires { value.push_back(Element{}); }) {
       value.clear();
       read_elements(value, length, info, known);
-    } else if constexpr (PointsToElements<Value>) {
+    } else if constexpr (requires { make_list(value, std::vector<Element>{}); }) {
       std::vector<Element> list;
       read_elements(list, length, info, known);
-      value = std::make_shared<std::vector<Element> const>(std::move(list));
-    } else if constexpr (std::is_constructible_v<Value, std::span<Element const>, std::string>) {
-      std::vector<Element> list;
-      read_elements(list, length, info, known);
-      value = list.empty() ? Value{} : Value(std::span<Element const>(list), where_);
+      make_list(value, std::move(list));
     } else {
       if (length != value.size()) damaged();
       for (std::size_t i = 0; i < length; ++i)
         read("item", value.data()[i], info, i < known.size() ? &known[i] : i > 0 ? &value.data()[i - 1] : nullptr);
     }
+  }
+
+  /// A list that cannot be changed in place.
+  template <class Value, class Element>
+  requires(PointsToElements<Value> ||
+           std::is_constructible_v<Value, std::span<Element const>, std::string>) void make_list(Value& value,
+                                                                                                 std::vector<Element>&&
+                                                                                                     list) const {
+    if constexpr (PointsToElements<Value>)
+      value = std::make_shared<std::vector<Element> const>(std::move(list));
+    else
+      value = list.empty() ? Value{} : Value(std::span<Element const>(list), where_);
   }
 
   template <class List, class Element>
@@ -253,8 +266,9 @@ class FieldReader {
     }
   }
 
-  /// Calls `upgrade` of the structs in `value` that the archive had in an older version, the innermost first. A pass of
-  /// its own: until all is read, the next struct may refer to one as it was written.
+  /// Calls `upgrade` of the structs in `value` that the archive had in an older version, the innermost first, and
+  /// checks what `read` has not. A pass of its own: until all is read, the next struct may refer to one as it was
+  /// written.
   template <class Value>
   void upgrade(Value& value) {
     if constexpr (Described<Value>) {
@@ -263,16 +277,39 @@ class FieldReader {
         if (auto const* shape = types_.shape(known_struct<Value>);
             shape != nullptr && shape->version < version_of<Value>())
           value.upgrade(shape->version);
-      if constexpr (requires { value.check(where_); }) value.check(where_);  // see read_struct
+      for_each_parameter<Value>([&](auto const& p) { check_ranges(value.*p.field, p); });
+      if constexpr (requires { value.check(where_); }) value.check(where_);
     } else if constexpr (Variant<Value>) {
       with_alternative(value, [&]<class Model>(Model const&, auto place) { upgrade(*std::get_if<place>(&value)); });
     } else if constexpr (Optional<Value>) {
       if (value) upgrade(*value);
-    } else if constexpr (requires {
-                           value.begin()->~ElementOf<Value>();
-                           requires !std::is_const_v<std::remove_reference_t<decltype(*value.begin())>>;
-                         }) {
+    } else if constexpr (ParameterList<Value> && !std::is_same_v<Value, std::string>) {
+      upgrade_list(value);
+    }
+  }
+
+  template <ParameterList Value>
+  void upgrade_list(Value& value) {
+    if constexpr (requires { requires !std::is_const_v<std::remove_reference_t<decltype(*value.begin())>>; }) {
       for (auto& element : value) upgrade(element);
+    } else {
+      auto const known = elements_of(value);
+      std::vector<ElementOf<Value>> list(known.begin(), known.end());
+      for (auto& element : list) upgrade(element);
+      make_list(value, std::move(list));
+    }
+  }
+
+  template <class Value>
+  void check_ranges(Value const& value, ParameterInfo const& info) const {
+    if constexpr (Described<Value> || Variant<Value> || std::is_same_v<Value, std::string>) {
+      return;
+    } else if constexpr (Optional<Value>) {
+      if (value) check_ranges(*value, info);
+    } else if constexpr (ParameterList<Value>) {
+      for (auto const& element : elements_of(value)) check_ranges(element, info);
+    } else {
+      check_range(value, info);
     }
   }
 
