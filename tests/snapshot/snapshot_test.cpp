@@ -147,6 +147,22 @@ struct Shares {
                           parameter("shared", &Shares::shared, "-", {}, ""));
   }
 };
+/// Was a share alone; the others came later.
+struct MoreShares {
+  Share<true> one{2}, added{3};
+  std::optional<Share<true>> maybe = Share<true>{4};
+  static constexpr char const* name = "more_shares";
+  static constexpr auto parameters() {
+    using P = MoreShares;
+    return parameter_list(parameter("one", &P::one, "-", {}, ""), parameter("added", &P::added, "-", {}, ""),
+                          parameter("maybe", &P::maybe, "-", {}, ""));
+  }
+};
+struct OneShare {
+  Share<false> one;
+  static constexpr char const* name = "more_shares";
+  static constexpr auto parameters() { return parameter_list(parameter("one", &OneShare::one, "-", {}, "")); }
+};
 /// 0: as it was saved; 1: two fields have changed places; 2: one is of another kind.
 template <int change>
 struct Ordered {
@@ -346,6 +362,11 @@ TEST_CASE("ranges count after the upgrade, in lists of each kind") {
     CHECK(now.one[0].share == 7);
     REQUIRE(now.shared->size() == 2);
     CHECK((*now.shared)[1].share == 9);
+    MoreShares more;  // what was added is at the default of today
+    from_snapshot(to_snapshot({.format = format}, OneShare{{70}}), "x", more);
+    CHECK(more.one.share == 7);
+    CHECK(more.added.share == 3);
+    CHECK(more.maybe->share == 4);
     auto const wrong = to_snapshot({.format = format}, Shares<false>{{{120}}, list});
     CHECK(message_of([&] { from_snapshot(wrong, "x", now); }).find("x: share: is 12") == 0);
     CHECK(now.one[0].share == 7);
@@ -412,22 +433,71 @@ TEST_CASE("a world that contradicts itself is refused") {
   CHECK(refusal([](auto& parts) {
           parts.largest_shape.rear = -1.0;
         }).find("another: snapshot: largest_shape: shape.rear") == 0);
+  auto const refuses = [&](char const* sentence, auto const& change) {
+    CAPTURE(sentence);
+    CHECK(refusal(change).find(sentence) != std::string::npos);
+  };
+  refuses("there is no such id", [](auto& parts) { parts.agents.back().id = none<AgentId>; });
+  refuses("an object has no id", [](auto& parts) { parts.objects.back().id = none<ObjectId>; });
+  refuses("its outline is longer than 10 km", [](auto& parts) {
+    parts.objects[0].outline = geometry::Polygon({{0, 0}, {9000, 0}, {9000, 9000}});
+  });
+  refuses("its agents are not sorted", [](auto& parts) { std::swap(parts.agents[0].id, parts.agents[1].id); });
+  refuses("single_track.wheel_base", [](auto& parts) { parts.agents[0].dynamics.wheel_base = 0.0; });
+  refuses("its goal has no parts", [](auto& parts) { parts.agents[0].goal = GoalSequence{}; });
+  refuses("light", [](auto& parts) { parts.lights.push_back({}); });
+  refuses("its time is not finite", [](auto& parts) { parts.frame.time = std::nan(""); });
+  for (double const strange : {std::nan(""), HUGE_VAL}) {
+    auto const refuses_record = [&](auto const& change) {
+      refuses("an agent has a state, place or action that is not finite",
+              [&](auto& parts) { change(parts.frame.agents[Slot{1}]); });
+    };
+    refuses_record([&](auto& record) { record.state.y = strange; });
+    refuses_record([&](auto& record) { record.lane.lateral = strange; });
+    refuses_record([&](auto& record) { record.action.acceleration = strange; });
+    CHECK(refusal([&](auto& parts) {
+            auto& record = parts.frame.agents[Slot{1}];
+            record.status = AgentStatus::left_map;
+            record.state.y = strange;
+          }) == "no error");
+  }
   Sim thawed(map);
   from_snapshot(to_snapshot({}, world), "x", thawed);
   CHECK(thawed.roster().largest_shape == world.roster().largest_shape);
   CHECK(thawed.add_object(cone) == world.add_object(cone));
 }
 
-TEST_CASE("a controller that would act without end is refused") {
-  using Driven = World<BehaviorSet<IdmClassic>, StanleyExecution, SingleTrack>;
+TEST_CASE("a controller that would act without end, an observer and a past that cannot be are refused") {
+  using Driven = World<BehaviorSet<IdmClassic>, StanleyExecution, SingleTrack,
+                       ObserverChain<ParametricObserver, DelayedObserver<2>>>;
   auto const map = support::straight_road(2, 500.0);
   Driven world(map);
   world.add({.position = {20, -1.75}, .speed = 3, .behavior = IdmClassic{}});
-  auto parts = detail::archived(world);
-  parts.agents[0].execution.actuation.period = 1e-30;
-  CHECK(message_of([&] {
-          static_cast<void>(detail::restored<Driven>(map, std::move(parts)));
+  auto const refusal = [&](auto const& change) {
+    auto parts = detail::archived(world);
+    change(parts);
+    return message_of([&] { static_cast<void>(detail::restored<Driven>(map, std::move(parts))); });
+  };
+  CHECK(refusal([](auto& parts) {
+          parts.agents[0].execution.actuation.period = 1e-30;
         }).find("another: snapshot: agent 0: stanley.actuation.period") == 0);
+  CHECK(refusal([](auto& parts) {
+          parts.agents[0].observer.template stage<0>().others.along = -1.0;
+        }).find("others.along") != std::string::npos);
+  CHECK(refusal([](auto& parts) { parts.frame.agents[Slot{0}].past.states[1].x = std::nan(""); }).find("not finite") !=
+        std::string::npos);
+}
+
+TEST_CASE("a state may have fields that are infinite: they are its model's own") {
+  using Loose = World<BehaviorSet<IdmClassic>, InterpolateExecution, TripleIntegrator>;
+  Loose world(support::straight_road(1, 300.0));
+  auto const id = world.add({.position = {20, -1.75}, .speed = 3, .behavior = IdmClassic{}});
+  auto state = world.state(id);
+  state.lateral_acceleration = std::nan("");
+  world.set_state(id, state);
+  Loose thawed(world.shared_map());
+  from_snapshot(to_snapshot({}, world), "x", thawed);
+  CHECK(snapshot_hash(thawed) == snapshot_hash(world));
 }
 
 TEST_CASE("a number out of its range, a name that is no tag, and a file that would fill the memory are refused") {

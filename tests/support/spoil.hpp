@@ -33,7 +33,7 @@ void for_each_number(Value& value, F const& f) {
   }
 }
 
-/// Another number, often at the end of what its type holds.
+/// Another number, often one that is easily forgotten. None is near overflow, as no state is: see `is_finite`.
 template <class Number>
 void spoil(Number& number, cambium::RandomStream& random) {
   using Limits = std::numeric_limits<Number>;
@@ -44,24 +44,11 @@ void spoil(Number& number, cambium::RandomStream& random) {
   } else if constexpr (std::is_same_v<Number, bool>) {
     number = !number;
   } else if constexpr (std::is_floating_point_v<Number>) {
-    Number const all[] = {Limits::quiet_NaN(),
-                          Limits::infinity(),
-                          -Limits::infinity(),
-                          Limits::max(),
-                          Limits::denorm_min(),
-                          Number(1e30),
-                          Number(-1e30),
-                          Number(1e9),
-                          Number(1e-30),
-                          Number(0),
-                          Number(-1),
-                          Number(-number),
-                          Number(number * 1000),
-                          Number(number + 1),
-                          Number(number - 1),
-                          Number(number + 100),
-                          Number(number - 100),
-                          Number(cambium::uniform01(random))};
+    Number const all[] = {
+        Limits::quiet_NaN(), Limits::infinity(),   -Limits::infinity(),   Number(1e30),
+        Number(-1e30),       Number(1e9),          Number(1e-30),         Number(0),
+        Number(-1),          Number(-number),      Number(number * 1000), Number(number + 1),
+        Number(number - 1),  Number(number + 100), Number(number - 100),  Number(cambium::uniform01(random))};
     number = all[random() % std::size(all)];
   } else {
     using Whole = std::make_unsigned_t<Number>;  // wraps
@@ -129,9 +116,7 @@ template <class World, class Tell>
         from_snapshot(to_snapshot({}, other), "spoilt", again);
       }
     } catch (std::exception const& error) {
-      std::string const what = error.what();
-      if (what.find("is beyond 1e9 m") == what.npos)  // it may drive there
-        tell("spoilt world " + std::to_string(i) + ": " + what);
+      tell("spoilt world " + std::to_string(i) + ": " + error.what());
     }
   }
   return result;

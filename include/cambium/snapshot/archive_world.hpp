@@ -215,30 +215,21 @@ struct ArchivedWorld {
   }
 };
 
-/// Whether all real numbers of `value` are finite.
-template <class Value>
-[[nodiscard]] bool all_finite(Value const& value) {
-  bool all = true;
-  if constexpr (std::is_floating_point_v<Value>) {
-    return std::isfinite(value);
-  } else if constexpr (Described<Value>) {
-    for_each_parameter<Value>([&](auto const& p) { all = all && all_finite(value.*p.field); });
-  } else if constexpr (ParameterList<Value>) {
-    for (auto const& element : elements_of(value)) all = all && all_finite(element);
-  }
-  return all;
-}
-
-/// Why no agent of a world at `time` [s] can have this record; null if one can. What it remembers may be anything: a
-/// planner may have gone wrong.
+/// Why `World` would not let an agent drive on from this record at `time` [s]; null if it would. What drivers remember
+/// may be anything: a planner may have gone wrong.
 template <class Record>
 [[nodiscard]] char const* flaw_of(Record const& record, double time) {
-  constexpr double farthest = 1e9;  // [m]
-  if (!all_finite(record.state) || !all_finite(record.lane) || !all_finite(record.action) || !all_finite(record.past))
-    return "has a state, place or action that is not finite";
-  if (std::abs(record.state.x) > farthest || std::abs(record.state.y) > farthest) return "is beyond 1e9 m";
+  if (record.status != AgentStatus::driving && record.status != AgentStatus::not_started) return nullptr;
+  auto const& [s, lateral, heading_error, index, segment, corridor, piece] = record.lane;
+  bool is_sound = is_finite(record.state) && std::isfinite(s + lateral + heading_error) &&
+                  std::isfinite(record.action.acceleration + record.action.steering);
+  if constexpr (requires { record.past.states; }) {
+    for (auto const& state : record.past.states) is_sound = is_sound && is_finite(state);
+    for (double const acceleration : record.past.accelerations) is_sound = is_sound && std::isfinite(acceleration);
+  }
+  if (!is_sound) return "has a state, place or action that is not finite";
   // Execution models set the time of a state.
-  if (record.status == AgentStatus::driving && std::abs(record.state.time - time) > 1.0)
+  if (record.status == AgentStatus::driving && !(std::abs(record.state.time - time) <= 1.0))
     return "drives at another time than its world";
   return nullptr;
 }
@@ -325,7 +316,7 @@ template <class Value>
 template <class Record, class Behavior>
 void place_on(map::RoadCorridor const& road, Behavior const& behavior, Record& record, double time) {
   if (auto const* const flaw = flaw_of(record, time))
-    require_consistent(false, (std::string("an agent ") + flaw).c_str());
+    throw SnapshotError("snapshot", std::string("an agent ") + flaw, "it is damaged: take another copy");
   require_consistent(is_on(road, record.lane), "an agent is on no lane of its road");
   auto const& pieces = road.corridors[record.lane.corridor].pieces;
   record.lane.index = map::lane_coordinate(pieces[record.lane.piece], record.lane.s);
@@ -396,8 +387,8 @@ template <class World>
   }
   for (auto& object : parts.objects) {
     check_outline(object.outline);
-    require_consistent(is_valid(object.id) && static_cast<std::uint32_t>(object.id) >= roster->next_object_id,
-                       "its objects are not sorted");
+    require_consistent(is_valid(object.id), "an object has no id");
+    require_consistent(static_cast<std::uint32_t>(object.id) >= roster->next_object_id, "its objects are not sorted");
     roster->next_object_id = static_cast<std::uint32_t>(object.id);
     static_cast<void>(enter_object(*map, *roster, std::move(object.outline)));
   }

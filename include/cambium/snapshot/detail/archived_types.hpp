@@ -146,12 +146,13 @@ struct KnownStruct {
   std::uint16_t const* hashes;  ///< see `hashes_of_fields`
   bool upgrades;                ///< from older versions
 };
+template <class T>
+concept Upgrades = requires(T& object) {
+  object.upgrade(0u);
+};
 template <Described T>
 inline constexpr KnownStruct known_struct{struct_name<T>(), version_of<T>(), field_count<T>(), field_hashes<T>.data(),
-                                          requires(T& object){object.upgrade(0u);
-}  // namespace cambium::detail
-}
-;
+                                          Upgrades<T>};
 
 template <class T>
 inline constexpr char type_key{};  ///< its address stands for the type

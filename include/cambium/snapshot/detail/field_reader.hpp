@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -233,7 +234,7 @@ class FieldReader {
     if constexpr (requires { value.push_back(Element{}); }) {
       value.clear();
       read_elements(value, length, info, known);
-    } else if constexpr (requires { make_list(value, std::vector<Element>{}); }) {
+    } else if constexpr (is_made_of_list<Value>) {
       std::vector<Element> list;
       read_elements(list, length, info, known);
       make_list(value, std::move(list));
@@ -244,16 +245,17 @@ class FieldReader {
     }
   }
 
+  template <class Value>
+  static constexpr bool is_made_of_list =
+      PointsToElements<Value> || std::is_constructible_v<Value, std::span<ElementOf<Value> const>, std::string>;
+
   /// A list that cannot be changed in place.
-  template <class Value, class Element>
-  requires(PointsToElements<Value> ||
-           std::is_constructible_v<Value, std::span<Element const>, std::string>) void make_list(Value& value,
-                                                                                                 std::vector<Element>&&
-                                                                                                     list) const {
+  template <class Value>
+  void make_list(Value& value, std::vector<ElementOf<Value>>&& list) const {
     if constexpr (PointsToElements<Value>)
-      value = std::make_shared<std::vector<Element> const>(std::move(list));
+      value = std::make_shared<std::vector<ElementOf<Value>> const>(std::move(list));
     else
-      value = list.empty() ? Value{} : Value(std::span<Element const>(list), where_);
+      value = list.empty() ? Value{} : Value(std::span<ElementOf<Value> const>(list), where_);
   }
 
   template <class List, class Element>
@@ -272,11 +274,14 @@ class FieldReader {
   template <class Value>
   void upgrade(Value& value) {
     if constexpr (Described<Value>) {
-      for_each_parameter<Value>([&](auto const& p) { upgrade(value.*p.field); });
-      if constexpr (requires { value.upgrade(0u); })
-        if (auto const* shape = types_.shape(known_struct<Value>);
-            shape != nullptr && shape->version < version_of<Value>())
-          value.upgrade(shape->version);
+      auto const* const shape = types_.shape(known_struct<Value>);
+      std::size_t left = shape != nullptr ? shape->fields : 0;  // the others are defaults of today
+      for_each_parameter<Value>([&](auto const& p) {
+        if (left > 0) upgrade(value.*p.field);
+        left -= left > 0;
+      });
+      if constexpr (Upgrades<Value>)
+        if (shape != nullptr && shape->version < version_of<Value>()) value.upgrade(shape->version);
       for_each_parameter<Value>([&](auto const& p) { check_ranges(value.*p.field, p); });
       if constexpr (requires { value.check(where_); }) value.check(where_);
     } else if constexpr (Variant<Value>) {
@@ -290,13 +295,16 @@ class FieldReader {
 
   template <ParameterList Value>
   void upgrade_list(Value& value) {
-    if constexpr (requires { requires !std::is_const_v<std::remove_reference_t<decltype(*value.begin())>>; }) {
-      for (auto& element : value) upgrade(element);
-    } else {
-      auto const known = elements_of(value);
-      std::vector<ElementOf<Value>> list(known.begin(), known.end());
-      for (auto& element : list) upgrade(element);
+    auto const known = elements_of(value);
+    std::vector<ElementOf<Value>> list(known.begin(), known.end());
+    for (auto& element : list) upgrade(element);
+    if constexpr (requires { value.push_back(list[0]); }) {
+      value.clear();
+      for (auto& element : list) value.push_back(std::move(element));
+    } else if constexpr (is_made_of_list<Value>) {
       make_list(value, std::move(list));
+    } else {
+      std::move(list.begin(), list.end(), value.data());
     }
   }
 
