@@ -220,8 +220,8 @@ struct ArchivedWorld {
 template <class Record>
 [[nodiscard]] char const* flaw_of(Record const& record, double time) {
   if (record.status != AgentStatus::driving && record.status != AgentStatus::not_started) return nullptr;
-  auto const& [s, lateral, heading_error, index, segment, corridor, piece] = record.lane;
-  bool is_sound = is_finite(record.state) && std::isfinite(s + lateral + heading_error) &&
+  auto const& lane = record.lane;
+  bool is_sound = is_finite(record.state) && std::isfinite(lane.s + lane.lateral + lane.heading_error) &&
                   std::isfinite(record.action.acceleration + record.action.steering);
   if constexpr (requires { record.past.states; }) {
     for (auto const& state : record.past.states) is_sound = is_sound && is_finite(state);

@@ -52,8 +52,8 @@ if(TARGET cambium::snapshot AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NO
   if(CAMBIUM_FUZZING_CLANG)  # a clang with sanitizers; g++ takes ten times as long to compile with these
     add_thaw_test(sanitizers ${CAMBIUM_FUZZING_CLANG} -O1 -g1
       -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
-    # 100 000 damaged files, of which every fourth has a right checksum again, so that the archive is read; and 7 500 where
-    # numbers were changed.
+    # 100 000 damaged files, of which every fourth has a right checksum again, so that the archive is read; and 7 500
+    # worlds with changed numbers.
     add_test(NAME snapshot.builds.mutants COMMAND ${builds_binary}/sanitizers mutate ${builds_binary}/recorded 100000)
     set_tests_properties(snapshot.builds.mutants PROPERTIES
       FIXTURES_REQUIRED "snapshot_recorded;snapshot_build_sanitizers")
