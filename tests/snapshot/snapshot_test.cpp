@@ -433,7 +433,7 @@ TEST_CASE("a world that contradicts itself is refused") {
   CHECK(refusal([](auto& parts) {
           parts.largest_shape.rear = -1.0;
         }).find("another: snapshot: largest_shape: shape.rear") == 0);
-  auto const refuses = [&](char const* sentence, auto const& change) {
+  auto const refuses = [&](std::string const& sentence, auto const& change) {
     CAPTURE(sentence);
     CHECK(refusal(change).find(sentence) != std::string::npos);
   };
