@@ -20,11 +20,16 @@ CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View con
                                                      Workspace& workspace) {
   return behavior.plan(view, memory, dt, workspace);
 }
-/// Plans in a flattened function of its own. A step that inlined every behaviour of a large set would take more than
-/// twice as long to compile and run no faster.
+/// Plans in a function of its own. A step that inlined every behaviour of a large set would take more than twice as
+/// long to compile and run no faster.
 template <class B, class View, class Memory>
-CAMBIUM_NOINLINE CAMBIUM_FLATTEN [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view,
-                                                                     Memory& memory, double dt) {
+CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, Memory& memory, double dt) {
+  return behavior.plan(view, memory, dt);
+}
+/// The same, flattened.
+template <class B, class View, class Memory>
+CAMBIUM_NOINLINE CAMBIUM_FLATTEN [[nodiscard]] Plan<View> plan_flattened(B const& behavior, View const& view,
+                                                                         Memory& memory, double dt) {
   return behavior.plan(view, memory, dt);
 }
 /// A step inlines the plans of at most this many behaviours (those with a workspace do not count).
@@ -83,7 +88,8 @@ struct BehaviorSet {
   }
 
   /// Plans by the agent's behaviour with its memory. One well-predicted branch per alternative, no virtual call.
-  template <class View>
+  /// `flattens`: whether what plans apart is inlined into one function each.
+  template <bool flattens = true, class View>
   [[nodiscard]] static Plan<View> plan(Any const& behavior, View const& view, Memory& memory, double dt,
                                        Workspaces& workspaces) {
     return behavior.visit([&](auto const& model, auto place) -> Plan<View> {
@@ -92,8 +98,12 @@ struct BehaviorSet {
       if constexpr (!std::is_same_v<Workspace, NoWorkspace>)
         return detail::plan_apart(model, view, own, dt, std::get<place>(workspaces));
       else if constexpr ((std::size_t{std::is_same_v<WorkspaceOf<Behaviors>, NoWorkspace>} + ...) >
-                         detail::most_plans_in_step)
-        return detail::plan_apart(model, view, own, dt);
+                         detail::most_plans_in_step) {
+        if constexpr (flattens)
+          return detail::plan_flattened(model, view, own, dt);
+        else
+          return detail::plan_apart(model, view, own, dt);
+      }
       else
         return model.plan(view, own, dt);
     });

@@ -435,7 +435,8 @@ class World {
     scratch_.fresh = true;
   }
 
-  /// Inlines the whole step into one function. With other observers this would take minutes to compile.
+  /// Inlines the whole step into one function. With other observers, whose views are large, this would take minutes to
+  /// compile.
   CAMBIUM_FLATTEN void advance_all_inlined(double dt, double end, IdVector<Record, Slot>& next, StepResult& result) {
     advance_all(dt, end, next, result);
   }
@@ -465,7 +466,7 @@ class World {
     if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
     auto const& agent = roster_->agents[slot];
     View const view(*this, slot);
-    auto plan = Set::plan(agent.behavior, view, next.memory, dt, scratch_.workspaces);
+    auto plan = Set::template plan<Observer::perfect>(agent.behavior, view, next.memory, dt, scratch_.workspaces);
     if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
     if constexpr (!Observer::perfect)
       if (!plan.is_absolute) detail::carry_over(plan, view.state(), now.state);
