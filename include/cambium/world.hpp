@@ -62,6 +62,7 @@
 
 #include "cambium/world/agent_spec.hpp"
 #include "cambium/world/driven_to.hpp"
+#include "cambium/world/extern_world.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/observed_world.hpp"
 #include "cambium/world/plane_index.hpp"

@@ -19,6 +19,7 @@
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/benchmark/run_result.hpp"
+#include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/driving.hpp"
@@ -145,7 +146,11 @@ template <class Set, class Behavior>
 struct WithBehavior;
 template <class... Models, class Behavior>
 struct WithBehavior<BehaviorSet<Models...>, Behavior> {
-  using type = BehaviorSet<Models..., Behavior>;
+  using type = BehaviorSet<Models..., Timed<Behavior>>;
+};
+template <class... Models, class... Behaviors>
+struct WithBehavior<BehaviorSet<Models...>, OneOf<Behaviors...>> {
+  using type = BehaviorSet<Models..., Timed<Behaviors>...>;
 };
 
 /// The last worlds of a run, for what keeps failures.
@@ -324,21 +329,25 @@ template <class World, class AfterStep>
 
 }  // namespace detail
 
-/// The world that a contender with this behaviour drives in: the type of its snapshots.
+/// A contender's behaviour as its world has it: with a clock around its plans.
+template <class Behavior>
+using ContenderBehavior = detail::Timed<Behavior>;
+
+/// The world that a contender with this behaviour, or `OneOf` several, drives in: the type of its snapshots.
 template <class ScenarioWorld, class Behavior>
 using ContenderWorld =
-    World<typename detail::WithBehavior<typename ScenarioWorld::Behaviors, detail::Timed<Behavior>>::type,
+    World<typename detail::WithBehavior<typename ScenarioWorld::Behaviors, Behavior>::type,
           typename ScenarioWorld::Execution, typename ScenarioWorld::Dynamics, typename ScenarioWorld::Observer>;
 
 /// A contender from a function that says, for the spec of an agent to be controlled, what drives it:
-/// `choose(spec, scenario)` returns a behaviour. `name`: for tables and the database; `parameters`: what tells it from
+/// `choose(spec, scenario)` returns a behaviour, or `OneOf` several: contenders that choose from the same ones share a
+/// world, which is then compiled once. `name`: for tables and the database; `parameters`: what tells it from
 /// contenders of that name. `keep(FailedRun)` returns the snapshot of a failure that is recorded: `freeze_run`.
 template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
 [[nodiscard]] Contender<ScenarioWorld> contender_by(std::string name, std::string parameters,
                                                     std::uint64_t parameters_hash, Choose choose, Keep keep = {}) {
   using Behavior =
       std::invoke_result_t<Choose const&, typename ScenarioWorld::AgentSpec const&, Scenario<ScenarioWorld> const&>;
-  using Timed = detail::Timed<Behavior>;
   using World = ContenderWorld<ScenarioWorld, Behavior>;
   constexpr bool keeps = !std::is_same_v<Keep, KeepNothing>;
   auto drive = [choose = std::move(choose), keep = std::move(keep), name](Scenario<ScenarioWorld> const& scenario,
@@ -357,7 +366,15 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
       own.insert(own.end(), scenario.controlled.begin(), scenario.controlled.end());
       auto const ours = with_behaviors<World>(scenario, [&](auto const& spec) -> typename World::Behavior {
         auto const id = spec.id.given().value_or(none<AgentId>);
-        if (std::ranges::find(own, id) != own.end()) return Timed(choose(spec, scenario), &clock, id == scenario.ego);
+        if (std::ranges::find(own, id) != own.end()) {
+          auto const timed = [&]<class B>(B const& chosen) -> typename World::Behavior {
+            return ContenderBehavior<B>(chosen, &clock, id == scenario.ego);
+          };
+          if constexpr (detail::Variant<Behavior>)
+            return choose(spec, scenario).visit(timed);
+          else
+            return timed(choose(spec, scenario));
+        }
         return std::visit([](auto const& driver) -> typename World::Behavior { return driver; }, spec.behavior);
       });
       auto world = ours.make_world();

@@ -367,28 +367,7 @@ class World {
 
   /// Advances the world by `dt` [s]: every agent plans on the current frame, then the next frame replaces it. Does not
   /// allocate once warm and throws nothing itself; the result reports problems. O(agents).
-  StepResult step(double dt) {
-    StepResult result;
-    if (!(dt > 0 && dt <= longest_step)) {
-      result.problem = StepProblem::bad_duration;
-      return result;
-    }
-    refresh_traffic();
-    auto& next = scratch_.next;
-    next.resize(frame_.agents.size());
-    double const end = frame_.time + dt;
-    if constexpr (Observer::perfect)
-      advance_all_inlined(dt, end, next, result);
-    else
-      advance_all(dt, end, next, result);
-    place_all(dt, next, result);
-    scratch_.remember(frame_);
-    frame_.agents.swap(next);
-    frame_.time = end;
-    ++frame_.step;
-    scratch_.fresh = false;
-    return result;
-  }
+  StepResult step(double dt);
 
   /// Keeps the last `frames` frames from now on (0, the default: none). Copies and predictions start without history.
   /// The history is cleared when an agent enters, leaves, or gets another route or another model of behaviour. Throws
@@ -524,6 +503,31 @@ class World {
   FrameType frame_;
   detail::Scratch<FrameType, typename Set::Workspaces> scratch_;
 };
+
+// Not in the class, and so not inline: sources that declare the world extern do not compile it.
+template <class Set, class ExecutionType, class DynamicModelType, class ObserverType>
+StepResult World<Set, ExecutionType, DynamicModelType, ObserverType>::step(double dt) {
+  StepResult result;
+  if (!(dt > 0 && dt <= longest_step)) {
+    result.problem = StepProblem::bad_duration;
+    return result;
+  }
+  refresh_traffic();
+  auto& next = scratch_.next;
+  next.resize(frame_.agents.size());
+  double const end = frame_.time + dt;
+  if constexpr (Observer::perfect)
+    advance_all_inlined(dt, end, next, result);
+  else
+    advance_all(dt, end, next, result);
+  place_all(dt, next, result);
+  scratch_.remember(frame_);
+  frame_.agents.swap(next);
+  frame_.time = end;
+  ++frame_.step;
+  scratch_.fresh = false;
+  return result;
+}
 
 namespace detail {
 /// Whether `W` is a `cambium::World` or derived from one.
