@@ -1,8 +1,7 @@
-#include "cambium/planner/frenet/frenet_planner.hpp"
-
 #include "traffic.hpp"
 
+CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Frenet>);
+
 benchmark::Driver benchmark::frenet(examples::ParameterFile& file) {
-  using Planner = cb::FrenetPlanner<Prediction<cb::ConstantAcceleration>>;
-  return with_speed(file, Planner{}, "frenet", [](Planner& planner, double speed) { planner.desired_speed = speed; });
+  return with_speed(file, Frenet{}, "frenet", [](Frenet& planner, double speed) { planner.desired_speed = speed; });
 }

@@ -1,10 +1,9 @@
-#include "cambium/planner/policy/policy_tree_planner.hpp"
-
 #include "traffic.hpp"
 
+CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::PolicyTree>);
+
 benchmark::Driver benchmark::policy_tree(examples::ParameterFile& file) {
-  using Planner = cb::PolicyTreePlanner<Prediction<cb::DriverActions<cb::Intersection>, cb::Intersection>>;
-  return with_speed(file, Planner{}, "policy_tree", [](Planner& planner, double speed) {
+  return with_speed(file, PolicyTree{}, "policy_tree", [](PolicyTree& planner, double speed) {
     planner.actions.driver.idm.desired_speed = planner.actions.macro.idm.desired_speed = speed;
   });
 }

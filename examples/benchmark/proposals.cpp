@@ -1,9 +1,8 @@
-#include "cambium/planner/policy/proposal_planner.hpp"
-
 #include "traffic.hpp"
 
+CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Proposals>);
+
 benchmark::Driver benchmark::proposals(examples::ParameterFile& file) {
-  using Planner = cb::ProposalPlanner<Prediction<cb::IdmProposal, cb::ConstantAcceleration>>;
-  return with_speed(file, Planner{}, "proposals",
-                    [](Planner& planner, double speed) { planner.driver.driver.desired_speed = speed; });
+  return with_speed(file, Proposals{}, "proposals",
+                    [](Proposals& planner, double speed) { planner.driver.driver.desired_speed = speed; });
 }

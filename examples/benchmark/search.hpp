@@ -1,19 +1,10 @@
 #pragma once
 
-#include "cambium/behavior/lane_change/driver_actions.hpp"
-#include "cambium/planner/mcts/mcts.hpp"
-
 #include "traffic.hpp"
 
 namespace benchmark {
 
-/// What the tree searches choose from: macro actions, or to drive as one does at junctions.
-using Actions = cb::DriverActions<cb::Intersection>;
-
-/// A tree search that expects `Others` of the others, with its usual settings.
-template <class Others>
-using Search = cb::Mcts<Prediction<Actions, Others>, Actions, cb::TrafficReward, Others>;
-
+/// A tree search with its usual settings.
 template <class Others>
 [[nodiscard]] Search<Others> search() {
   Search<Others> planner;

@@ -1,12 +1,18 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/lane_change/driver_actions.hpp"
+#include "cambium/behavior/lane_change/idm_proposal.hpp"
 #include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/behavior/pedestrian/pedestrian.hpp"
 #include "cambium/benchmark/contender.hpp"
@@ -15,7 +21,11 @@
 #include "cambium/observer/observer_set.hpp"
 #include "cambium/observer/occluded.hpp"
 #include "cambium/observer/perfect.hpp"
-#include "cambium/snapshot/freeze_run.hpp"
+#include "cambium/planner/frenet/frenet_planner.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
+#include "cambium/planner/policy/policy_tree_planner.hpp"
+#include "cambium/planner/policy/proposal_planner.hpp"
+#include "cambium/world/extern_world.hpp"
 #include "cambium/world/world.hpp"
 
 #include "../common/parameter_file.hpp"
@@ -30,19 +40,46 @@ using Traffic =
     cb::World<cb::BehaviorSet<cb::IdmClassic, cb::Mobil, cb::Intersection, cb::ConstantAcceleration, cb::Pedestrian>,
               cb::InterpolateExecution, cb::SingleTrack, cb::ObserverSet<cb::PerfectObserver, cb::OccludedObserver>>;
 
-/// A behaviour under test, and how to thaw the snapshot of a run that it failed.
-struct Driver {
-  cb::Contender<Traffic> contender;
-  examples::Thaw thaw;
-};
 using Spec = Traffic::AgentSpec;
 
 /// What planners predict with.
 template <class... Behaviors>
 using Prediction = Traffic::WithBehaviors<cb::BehaviorSet<Behaviors...>>;
 
+/// What the tree searches choose from: macro actions, or to drive as one does at junctions.
+using Actions = cb::DriverActions<cb::Intersection>;
+
+/// A tree search that expects `Others` of the others.
+template <class Others>
+using Search = cb::Mcts<Prediction<Actions, Others>, Actions, cb::TrafficReward, Others>;
+
+using Expecting = Search<cb::Intersection>;
+using Learning = Search<cb::HeadwayHypotheses<cb::Intersection>>;
+using PolicyTree = cb::PolicyTreePlanner<Prediction<Actions, cb::Intersection>>;
+using Proposals = cb::ProposalPlanner<Prediction<cb::IdmProposal, cb::ConstantAcceleration>>;
+using Frenet = cb::FrenetPlanner<Prediction<cb::ConstantAcceleration>>;
+
+/// All behaviours under test: they share a world, so that it is compiled once.
+using Tested = cb::OneOf<cb::IdmClassic, cb::Mobil, cb::Intersection, Expecting, Learning, PolicyTree, Proposals, Frenet>;
+using TestedWorld = cb::ContenderWorld<Traffic, Tested>;
+
+/// A behaviour under test, and how to thaw the snapshot of a run that it failed.
+struct Driver {
+  cb::Contender<Traffic> contender;
+  examples::Thaw thaw;
+};
+
+/// The snapshot of a failed run, and what thaws it.
+[[nodiscard]] std::string freeze(cb::FailedRun<TestedWorld> const& run);
+[[nodiscard]] std::unique_ptr<examples::Thawed> thaw(std::shared_ptr<cb::Map const> map, std::string_view bytes,
+                                                     std::string const& where);
+
 /// The speed that the scenario's driver of the ego likes: contenders drive in its place and have the same wish.
 [[nodiscard]] double desired_speed(Spec const& ego);
+
+/// A driver by its name, its parameters as text and hash, and what drives the ego.
+[[nodiscard]] Driver driver(std::string name, std::string parameters, std::uint64_t hash,
+                            std::function<Tested(Spec const&)> choose);
 
 /// A driver whose parameters are `planner` with what the file says of `name`, but for the ego's desired speed:
 /// `set_speed(planner, speed)`.
@@ -50,16 +87,14 @@ template <class Planner, class SetSpeed>
 [[nodiscard]] Driver with_speed(examples::ParameterFile& file, Planner planner, std::string const& name,
                                 SetSpeed set_speed) {
   file.take(planner, name);
-  auto const choose = [planner, set_speed](Spec const& ego, cb::Scenario<Traffic> const&) {
+  return driver(name, cb::to_string(planner), cb::hash_parameters(planner), [planner, set_speed](Spec const& ego) {
     auto own = planner;
     set_speed(own, desired_speed(ego));
-    return own;
-  };
-  return {cb::contender_by<Traffic>(name, cb::to_string(planner), cb::hash_parameters(planner), choose, cb::freeze_run),
-          &examples::thaw<cb::ContenderWorld<Traffic, Planner>, cb::RunPosition>};
+    return Tested(own);
+  });
 }
 
-// The shipped behaviours, a source file each, because planners take long to compile.
+// The shipped behaviours; each planner in a source file of its own, because planners take long to compile.
 [[nodiscard]] Driver idm(examples::ParameterFile& file);
 [[nodiscard]] Driver mobil(examples::ParameterFile& file);
 [[nodiscard]] Driver intersection(examples::ParameterFile& file);
@@ -84,3 +119,10 @@ template <class Planner, class SetSpeed>
 }
 
 }  // namespace benchmark
+
+CAMBIUM_EXTERN_WORLD(benchmark::TestedWorld);
+CAMBIUM_EXTERN_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Expecting>);
+CAMBIUM_EXTERN_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Learning>);
+CAMBIUM_EXTERN_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::PolicyTree>);
+CAMBIUM_EXTERN_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Proposals>);
+CAMBIUM_EXTERN_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Frenet>);

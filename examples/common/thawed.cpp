@@ -1,4 +1,4 @@
-#include "thawed.hpp"
+#include "thawed_world.hpp"
 
 #include "cambium/core/json.hpp"
 
