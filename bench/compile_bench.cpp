@@ -149,6 +149,13 @@ std::vector<Unit> units(fs::path const& root) {
   all.push_back({"planner/compiled", planner, compiled, Budget{6.0, 10.0, 600.0}});
   all.push_back({"first/compiled", first, compiled, Budget{6.0, 8.0, 600.0}});
   all.push_back({"first/header_only", first, {}, Budget{16.0, 25.0, 1200.0}});
+  // A world declared extern, by who uses it, and by who instantiates it.
+  auto const parts = program_of(root / "include/cambium/world/README.md", 2);
+  auto const instantiation = parts.find("// my_world.cpp"), use = parts.find("// any other source");
+  if (instantiation == parts.npos || use == parts.npos)
+    throw std::runtime_error("world/README.md: the second program lacks its comments that divide it into sources");
+  all.push_back({"extern/use", parts.substr(0, instantiation) + parts.substr(use), compiled, Budget{5.0, 6.0, 600.0}});
+  all.push_back({"extern/instantiate", parts.substr(0, use), compiled});
   all.push_back({"planners/compiled", text_of(root / "bench/compile_planners.cpp"), compiled, Budget{12.0, 22.0, 1000.0}});
   return all;
 }

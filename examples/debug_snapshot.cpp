@@ -114,7 +114,7 @@ struct Types {
 
 Types types_of(cb::SnapshotInfo const& info, std::string const& file) {
   if (info.component == desk::component)
-    return {&examples::thaw<desk::World, desk::Cycle>, "examples::thaw<desk::World, desk::Cycle>"};
+    return {&desk::thaw, "desk::thaw"};
   examples::ParameterFile usual;
   std::vector<std::string> known{desk::component};
   for (auto const& driver : benchmark::shipped(usual)) {

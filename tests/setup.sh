@@ -179,16 +179,20 @@ configure() {
       if [[ $other != "$part" ]]; then options+=("-DCAMBIUM_BUILD_$other=OFF"); fi
     done
     if have ninja; then options+=(-G Ninja); fi
-    if have ccache; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+    if have ccache; then
+      options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    elif [[ $part == TESTS ]]; then
+      options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=$root/tests/timed")
+    fi
   fi
-  if [[ $part == TESTS ]]; then options+=(-DCAMBIUM_BUILD_EXAMPLES=ON); fi
+  if [[ $part == TESTS ]]; then options+=(-DCAMBIUM_BUILD_EXAMPLES=ON "-DCAMBIUM_QUICK_TESTS=${quick:-OFF}"); fi
   rm -f "$build/.configured_$part"
   note "configuring"
   run_quietly cmake -S "$root" -B "$build" "${options[@]}" || exit 1
   touch "$build/.configured_$part"
 }
 
-# build_target TARGET
+# build_target TARGET...
 build_target() {
-  run_quietly cmake --build "$build" --target "$1" --parallel "$(getconf _NPROCESSORS_ONLN)" || exit 1
+  run_quietly cmake --build "$build" --target "$@" --parallel "$(getconf _NPROCESSORS_ONLN)" || exit 1
 }

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
+#include <string>
+#include <string_view>
 
 #include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/behavior/junction/intersection.hpp"
@@ -15,7 +18,10 @@
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
+#include "cambium/world/extern_world.hpp"
 #include "cambium/world/world.hpp"
+
+#include "thawed.hpp"
 
 // What `record_snapshots` drives and `debug_snapshot` takes apart.
 
@@ -110,4 +116,11 @@ struct Cycle {
   }
 };
 
+/// Restores its snapshots.
+[[nodiscard]] std::unique_ptr<examples::Thawed> thaw(std::shared_ptr<cb::Map const> map, std::string_view bytes,
+                                                     std::string const& where);
+
 }  // namespace desk
+
+CAMBIUM_EXTERN_WORLD(desk::World);
+CAMBIUM_EXTERN_PLANNING(desk::World, desk::Planner);

@@ -50,6 +50,9 @@ class Thawed {
   [[nodiscard]] virtual cb::Recording& recording() = 0;
 };
 
+/// Throws `ParameterError` at `where` unless the text is one value.
+void require_json(std::string const& text, std::string const& where);
+
 /// Restores a snapshot on its map.
 using Thaw = std::function<std::unique_ptr<Thawed>(std::shared_ptr<cb::Map const> map, std::string_view bytes,
                                                    std::string const& where)>;

@@ -25,9 +25,6 @@ namespace examples {
 void read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
                std::string const& json);
 
-/// Throws `ParameterError` at `where` unless the text is one value.
-void require_json(std::string const& text, std::string const& where);
-
 /// A described struct as JSON without its defaults. Throws `Error` for NaN.
 [[nodiscard]] std::string difference(void* object, void const* usual, cb::detail::TransferStruct transfer);
 

@@ -1,5 +1,4 @@
 // Cyclists keep to the side of their lane; drivers pass them there with a clearance, or follow them.
-// CAMBIUM_PASSING_RUNS is how many situations are drawn for each model, and of traffic of several.
 
 #include "cambium/behavior/law/passing.hpp"
 
@@ -15,6 +14,7 @@
 
 #include "cambium/map/road/curve_layout.hpp"
 
+#include "../support/scale.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -26,11 +26,6 @@ namespace {
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection
 
 using Sim = Traffic<ALL_DRIVERS>;
-
-std::uint32_t runs(std::uint32_t usual) {
-  char const* const asked = std::getenv("CAMBIUM_PASSING_RUNS");
-  return asked ? static_cast<std::uint32_t>(std::atoi(asked)) : usual;
-}
 
 /// A road with lanes of a width, which bends from 100 m on; traffic drives to +x, on the right or on the left.
 std::shared_ptr<cb::Map const> street(double width, double curvature = 0.0, bool right_hand = true, int lanes = 1) {
@@ -139,7 +134,7 @@ TEST_CASE_TEMPLATE("a cyclist keeps to the outer side of its lane, straight on a
 
 TEST_CASE_TEMPLATE("drivers pass a cyclist with 1.5 m of air where the lane allows, and return to the middle", Behavior,
                    ALL_DRIVERS) {
-  for (std::uint32_t seed = 0; seed < runs(12); ++seed) {
+  for (std::uint32_t seed = 0; seed < support::runs(12); ++seed) {
     CAPTURE(seed);
     cb::RandomStream random(seed, 11, 0);
     bool const right_hand = cb::uniform01(random) < 0.5;
@@ -236,7 +231,7 @@ TEST_CASE(
 
 TEST_CASE("cars, vans and cyclists of different speeds share wide lanes without contact; most cars get past") {
   int with_car = 0, past = 0;
-  for (std::uint32_t seed = 0; seed < runs(30); ++seed) {
+  for (std::uint32_t seed = 0; seed < support::runs(30); ++seed) {
     CAPTURE(seed);
     cb::RandomStream random(seed, 12, 0);
     bool const right_hand = seed % 2 == 0;

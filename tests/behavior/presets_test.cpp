@@ -41,9 +41,11 @@ TEST_CASE("presets of drivers are valid and drive as their names say") {
   CHECK(capacity < 2000.0);
 }
 
-TEST_CASE_TEMPLATE("a temperament makes a whole driver, whatever the model", Driver, cb::IdmClassic,
-                   cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge,
-                   cb::Intersection, cb::HumanDriver<cb::Mobil>) {
+#define DRIVERS                                                                                                    \
+  cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge, \
+      cb::Intersection, cb::HumanDriver<cb::Mobil>
+
+TEST_CASE_TEMPLATE("a temperament makes a whole driver, whatever the model", Driver, DRIVERS) {
   namespace presets = cb::presets;
   Driver const timid = presets::timid<Driver>(), normal = presets::normal<Driver>(),
                hasty = presets::aggressive<Driver>();
@@ -59,7 +61,7 @@ TEST_CASE_TEMPLATE("a temperament makes a whole driver, whatever the model", Dri
   CHECK(rules(hasty).late_at_red > 0.0);
   // On a motorway with a slow leader, the hastier one keeps less time headway.
   auto const headway = [](Driver const& driver) {
-    cb::World<cb::BehaviorSet<Driver, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack> world(
+    cb::World<cb::BehaviorSet<DRIVERS, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack> world(
         support::straight_road(1, 5000.0));
     world.add({.position = {100, -1.75}, .speed = 20.0, .behavior = cb::ConstantAcceleration{}});
     auto const id = world.add({.position = {20, -1.75}, .speed = 20.0, .behavior = driver});

@@ -78,6 +78,8 @@ static_assert(!cb::HasIdmParameters<Gipps>);
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal, \
       cb::RssConformant<cb::IdmClassic>, cb::HumanDriver<cb::IdmClassic>, Gipps
 
+using Driven = Traffic<DRIVERS>;
+
 template <class Behavior>
 cb::RoadRules& rules_of(Behavior& behavior) {
   if constexpr (requires { behavior.nominal; })
@@ -94,7 +96,7 @@ TEST_CASE_TEMPLATE("every driver stops before its lane's end if the rules say so
   auto const drive = [](cb::RoadRules::LaneEnd lane_end) {
     Behavior driver{};
     rules_of(driver).lane_end = lane_end;
-    Traffic<Behavior> world(straight_road(1, 300));
+    Driven world(straight_road(1, 300));
     auto const id = world.add({.position = {100, -1.75}, .speed = 14, .behavior = driver});
     for (int i = 0; i < 300; ++i) REQUIRE(world.step(0.2));
     return world.record(id);
@@ -113,7 +115,7 @@ TEST_CASE_TEMPLATE(
     "a driver that enters over the border of its lane finds back to the middle, one within it keeps its place",
     Behavior, cb::IdmClassic, cb::AdaptiveCruiseControl, cb::Intersection) {
   auto const offset_after = [](double offset) {
-    Traffic<Behavior> world(straight_road(2, 400));
+    Driven world(straight_road(2, 400));
     auto const id = world.add({.position = {50, -5.25 + offset}, .speed = 10, .behavior = Behavior{}});
     for (int i = 0; i < 60; ++i) REQUIRE(world.step(0.2));
     CHECK(std::abs(world.record(id).lane.heading_error) < 1e-3);
@@ -266,7 +268,7 @@ TEST_CASE_TEMPLATE("every driver stops at a red light until it is green if the r
   for (bool const obeys : {true, false}) {
     Behavior driver{};
     rules_of(driver).obey_signals = obeys;
-    Traffic<Behavior> world(map);
+    Driven world(map);
     world.set_light(map->lights()[0].id, {.cycle = 100.0, .green_begin = 60.0, .green_end = 90.0});
     auto const id = world.add({.position = {50, -1.75}, .speed = 13, .behavior = driver});
     for (int k = 0; k < 290; ++k) REQUIRE(world.step(0.2));
@@ -287,7 +289,7 @@ TEST_CASE_TEMPLATE("every driver stops at a red light until it is green if the r
 TEST_CASE_TEMPLATE("every driver stops once at a stop sign and goes on", Behavior, DRIVERS) {
   Behavior driver{};
   rules_of(driver).obey_signals = true;
-  Traffic<Behavior> world(support::road_with_signal("206"));
+  Driven world(support::road_with_signal("206"));
   auto const id = world.add({.position = {100, -1.75}, .speed = 13, .behavior = driver});
   int stops = 0;
   for (int k = 0; k < 200 && world.state(id).x < 300.0; ++k) {
@@ -307,7 +309,7 @@ TEST_CASE_TEMPLATE("every driver brakes comfortably and in time for a bend if th
     auto& rules = rules_of(driver);
     rules.slow_for_bends = slows;
     rules.lateral_acceleration = 2.5;
-    Traffic<Behavior> world(map);
+    Driven world(map);
     auto const id = world.add({.position = {10, -1.75}, .speed = 14.0, .behavior = driver});
     double fastest = 0.0, hardest = 0.0;
     while (world.status(id) == cb::AgentStatus::driving && world.record(id).lane.s < 240.0) {
@@ -335,7 +337,7 @@ TEST_CASE_TEMPLATE("every driver meets a lower speed limit in time if the rules 
   for (bool const obeys : {true, false}) {
     Behavior driver{};
     rules_of(driver).obey_speed_limits = obeys;
-    Traffic<Behavior> world(map);
+    Driven world(map);
     auto const id = world.add({.position = {20, -1.75}, .speed = 15.0, .behavior = driver});
     double before = 0.0, behind = 0.0, hardest = 0.0;
     for (int k = 0; k < 300 && world.status(id) == cb::AgentStatus::driving && world.state(id).x < 580.0; ++k) {
@@ -356,7 +358,7 @@ TEST_CASE_TEMPLATE("every driver meets a lower speed limit in time if the rules 
 TEST_CASE("macro actions that obey limits keep their speed on a road without a limit") {
   cb::MacroActions driver;
   driver.rules.obey_speed_limits = true;
-  Traffic<cb::MacroActions> world(support::straight_road());
+  Driven world(support::straight_road());
   auto const id = world.add({.position = {20, -1.75}, .speed = 30.0, .behavior = driver});
   world.memory<cb::MacroActions>(id).choose(cb::MacroActions::nothing);
   for (int k = 0; k < 20; ++k) REQUIRE(world.step(0.2));

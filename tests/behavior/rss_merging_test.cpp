@@ -1,13 +1,12 @@
 // RSS where two lanes become one: pairs of vehicles that keep their speeds unless RSS stops them.
-// CAMBIUM_RSS_RUNS is how many pairs are drawn for each map, shape and step.
 #include <doctest/doctest.h>
 
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <utility>
 
 #include "../support/maps.hpp"
+#include "../support/scale.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/safety/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
@@ -18,11 +17,6 @@
 using namespace cambium;
 
 namespace {
-
-std::uint32_t runs() {
-  char const* const asked = std::getenv("CAMBIUM_RSS_RUNS");
-  return asked ? static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10)) : 100;
-}
 
 /// Two lanes that merge, and where: positions on their paths [m].
 struct Merge {
@@ -47,14 +41,14 @@ geometry::Pose upstream(Map const& map, LaneId lane, double s, double distance) 
   return map.lane(lane).path.pose(s - distance);
 }
 
-/// Collisions of `runs()` pairs with and without RSS.
+/// Collisions of `support::runs(100)` pairs with and without RSS.
 template <class Behavior>
 std::uint32_t collisions(std::string const& name, geometry::Shape const& shape, double dt) {
   using Sim = World<BehaviorSet<Behavior>, InterpolateExecution, SingleTrack>;
   auto const map = support::own_map(name);
   auto const merge = merge_of(*map);
   std::uint32_t count = 0;
-  for (std::uint32_t number = 0; number < runs(); ++number) {
+  for (std::uint32_t number = 0; number < support::runs(100); ++number) {
     RandomStream random(4, number, 0);
     double const speed = Uniform{5.0, 25.0}(random), distance = Uniform{67.0, 187.0}(random),
                  offset = Uniform{-6.0, 6.0}(random);
@@ -87,5 +81,5 @@ TEST_CASE("of two vehicles side by side before a merge, RSS lets one go first") 
 }
 
 TEST_CASE("without RSS most of these pairs collide") {
-  CHECK(collisions<ConstantAcceleration>("lane_drop.xodr", geometry::car(), 0.2) > runs() / 2);
+  CHECK(collisions<ConstantAcceleration>("lane_drop.xodr", geometry::car(), 0.2) > support::runs(100) / 2);
 }

@@ -1,5 +1,4 @@
 // Drivers brake for pedestrians who are about to step onto the road, and for nobody else beside it.
-// CAMBIUM_STEPPING_OUT_RUNS is how many encounters are drawn for each model.
 
 #include "cambium/behavior/law/stepping_out.hpp"
 
@@ -12,6 +11,7 @@
 #include <memory>
 #include <vector>
 
+#include "../support/scale.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -24,11 +24,6 @@ namespace {
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection
 
 using Sim = Traffic<cb::ConstantAcceleration, cb::Pedestrian, ALL_DRIVERS>;
-
-std::uint32_t runs(std::uint32_t usual) {
-  char const* const asked = std::getenv("CAMBIUM_STEPPING_OUT_RUNS");
-  return asked ? static_cast<std::uint32_t>(std::atoi(asked)) : usual;
-}
 
 auto const road = support::straight_road(1, 600.0);  // y from 0 to -3.5, along +x
 
@@ -96,7 +91,7 @@ TEST_CASE("a driver brakes for those who will be in its way, as found by trying 
 
 TEST_CASE_TEMPLATE("a driver who can stop does not hit a pedestrian who steps onto the road", Behavior, ALL_DRIVERS) {
   int could_stop = 0, braked = 0;
-  for (std::uint32_t seed = 0; seed < runs(60); ++seed) {
+  for (std::uint32_t seed = 0; seed < support::runs(60); ++seed) {
     CAPTURE(seed);
     cb::RandomStream random(seed, 22, 0);
     Sim world(road, {.seed = seed});
@@ -176,7 +171,7 @@ TEST_CASE("nobody brakes for a pedestrian who waits, walks along the kerb, walks
 }
 
 TEST_CASE("a pedestrian and a driver do not wait for each other for good") {
-  for (std::uint32_t seed = 0; seed < runs(20); ++seed) {
+  for (std::uint32_t seed = 0; seed < support::runs(20); ++seed) {
     CAPTURE(seed);
     cb::RandomStream random(seed, 23, 0);
     Sim world(road, {.seed = seed});

@@ -1,13 +1,13 @@
-// The long test as a user meets it, in short. CAMBIUM_SOAK_MINUTES is how long traffic flows on each map.
+// The long test as a user meets it, in short: 3 minutes on each map, times CAMBIUM_SCALE.
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
+#include "../support/scale.hpp"
 #include "program.hpp"
 
 using program::content_of;
@@ -15,10 +15,7 @@ using program::Program;
 
 namespace {
 
-std::string minutes() {
-  char const* const asked = std::getenv("CAMBIUM_SOAK_MINUTES");
-  return asked ? asked : "3";
-}
+std::string minutes() { return std::to_string(support::runs(3)); }
 
 }  // namespace
 

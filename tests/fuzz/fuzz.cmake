@@ -1,5 +1,9 @@
 # The fuzzer of the OpenDRIVE reader, where there is a clang with its fuzzing and sanitizer libraries. A target outside
 # `all`; its ctest builds it and runs it for a short while, with a fixed seed. Elsewhere the test is skipped.
+left_to_all(fuzz.opendrive "needs a build with sanitizers; here damaged files in map")
+if(CAMBIUM_QUICK_TESTS)
+  return()
+endif()
 set(fuzz_source ${CMAKE_CURRENT_LIST_DIR})
 set(fuzz_flags -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all
   -fno-sanitize-coverage=trace-cmp)  # the mutator knows the words that comparisons would tell it
@@ -38,7 +42,7 @@ if(CAMBIUM_FUZZING_CLANG AND CAMBIUM_FUZZ_PUGIXML)
   add_build_test(fuzz.build opendrive_fuzz)
   set_tests_properties(fuzz.build PROPERTIES FIXTURES_SETUP opendrive_fuzz)
   add_test(NAME fuzz.opendrive
-    COMMAND ${fuzzer} -max_len=6000 -seed=1 -runs=4000 -max_total_time=30 -timeout=20 -rss_limit_mb=4096
+    COMMAND ${timed} test:fuzz.opendrive ${fuzzer} -max_len=6000 -seed=1 -runs=4000 -max_total_time=30 -timeout=20 -rss_limit_mb=4096
       -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/fuzz/ ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found ${fuzz_source}/seeds)
   set_tests_properties(fuzz.opendrive PROPERTIES FIXTURES_REQUIRED opendrive_fuzz)
 else()

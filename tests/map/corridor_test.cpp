@@ -38,7 +38,7 @@
 #include "cambium/map/corridor/road_area.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "../support/samples.hpp"
+#include "../support/scale.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
 #include "road_text.hpp"
@@ -785,8 +785,8 @@ TEST_CASE("centre lines on the corpus' maps go forward everywhere") {
     auto const map = cambium::load_opendrive(file.string()).map;
     for (auto const& lane : map->lanes()) {
       // Of lanes that others lead to, which are mostly in the roads of those, a fifth as a sample; all of them by
-      // CAMBIUM_SAMPLES=5.
-      bool const is_sampled = lane.predecessors.empty() || index_of(lane.id) % 5 < support::sample_factor();
+      // CAMBIUM_SCALE=5.
+      bool const is_sampled = lane.predecessors.empty() || index_of(lane.id) % 5 < support::runs(1);
       if (!lane.drivable() || !is_sampled) continue;
       auto const road = build_road_corridor(*map, straight_route(*map, lane.id));
       for (auto const& segment : road->corridors[road->main].center.segments()) {

@@ -1,5 +1,5 @@
 // Files damaged at random, read in full: a map that can be driven on, or an error; nothing else. 200 of each file are a
-// sample that takes seconds: CAMBIUM_SAMPLES=50 takes that many times as many.
+// sample that takes seconds: CAMBIUM_SCALE=50 takes that many times as many.
 #include <doctest/doctest.h>
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 #include "../support/corpus.hpp"
 #include "../support/map_faults.hpp"
-#include "../support/samples.hpp"
+#include "../support/scale.hpp"
 #include "../support/xml_damage.hpp"
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
@@ -104,7 +104,7 @@ TEST_CASE("a damaged file gives a map on which traffic runs, or a MapError, and 
   for (auto const* name : {"DR_DEU_Merging_MT_v01_shifted.xodr", "simple_3way_intersection_lht.xodr"})
     if (auto const file = corpus::find(std::string("opendrive/") + name)) files.push_back(*file);
   for (std::uint32_t i = 0; i < files.size(); ++i) {
-    auto const count = damage(files[i], i, 200 * static_cast<std::uint32_t>(support::sample_factor()));
+    auto const count = damage(files[i], i, support::runs(200));
     MESSAGE(files[i].filename().string() << ": " << count.maps << " maps, " << count.errors << " errors");
     CHECK(count.maps > 80);
     CHECK(count.errors > 2);

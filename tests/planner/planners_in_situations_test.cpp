@@ -1,5 +1,5 @@
 // Laws of all planners where driving is harder: before a bend, behind a standing vehicle, at a merge, behind a slow
-// leader. CAMBIUM_PLANNER_RUNS is how many runs each planner drives in each situation.
+// leader.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,6 +31,7 @@
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/merging_site.hpp"
 #include "cambium/world/world.hpp"
+#include "../support/scale.hpp"
 #include "support/maps.hpp"
 
 using namespace cambium;
@@ -50,15 +51,9 @@ using Frenet = FrenetPlanner<PredictionWorld>;
 // drives off.
 #define STEADY_PLANNERS Search, Proposal, PolicyTree, Frenet
 
-template <class Planner>
-using Sim = World<BehaviorSet<Planner, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+using Sim = World<BehaviorSet<ALL_PLANNERS, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
 
 constexpr double highest_lateral = 2.5;  // [m/s^2]
-
-std::uint64_t runs(std::uint64_t usual = 5) {
-  char const* const asked = std::getenv("CAMBIUM_PLANNER_RUNS");
-  return asked ? std::strtoull(asked, nullptr, 10) : usual;
-}
 
 /// A planner with settings for quick tests that limits its lateral acceleration.
 template <class Planner>
@@ -94,7 +89,7 @@ struct Drive {
 /// Steps `world` by the planner's own step, for `duration` [s] or until ego is at its goal, and checks what holds
 /// everywhere: ego causes no collision, stays on the road, and drives the start of the course that it reports.
 template <class Planner>
-Drive drive(Sim<Planner>& world, AgentId ego, Planner const& planner, double duration) {
+Drive drive(Sim& world, AgentId ego, Planner const& planner, double duration) {
   double const dt = step_of(planner);
   typename Planner::Workspace workspace;
   Drive seen;
@@ -124,7 +119,7 @@ Drive drive(Sim<Planner>& world, AgentId ego, Planner const& planner, double dur
 
 /// The same, and the first of the runs twice: from the same state, the same motion.
 template <class Planner>
-Drive drive(std::uint64_t seed, Sim<Planner>& world, AgentId ego, Planner const& planner, double duration) {
+Drive drive(std::uint64_t seed, Sim& world, AgentId ego, Planner const& planner, double duration) {
   auto again = world;
   auto const seen = drive<Planner>(world, ego, planner, duration);
   if (seed == 0) {
@@ -139,14 +134,14 @@ constexpr AgentId first{0};
 }  // namespace
 
 TEST_CASE_TEMPLATE("it slows down for a bend and drives through it", Planner, ALL_PLANNERS) {
-  for (std::uint64_t seed = 0; seed < runs(); ++seed) {
+  for (std::uint64_t seed = 0; seed < support::runs(5); ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, 1, 0);
     auto const planner = quick<Planner>();
     double const curvature = (seed % 2 == 0 ? 1.0 : -1.0) / Uniform{20.0, 60.0}(random);
     auto const line = map::lay_from(
         {}, {{150.0}, {20.0, 0.0, curvature}, {40.0, curvature, curvature}, {20.0, curvature, 0.0}, {200.0}});
-    Sim<Planner> world(support::map_of({.id = "1", .line = line, .sections = {{.right = map::equal_lanes(1)}}}),
+    Sim world(support::map_of({.id = "1", .line = line, .sections = {{.right = map::equal_lanes(1)}}}),
                        {.seed = seed});
     world.add({.position = {30.0, -1.75}, .speed = Uniform{8.0, 15.0}(random), .behavior = planner});
     auto const seen = drive<Planner>(seed, world, first, planner, 40.0);
@@ -156,13 +151,13 @@ TEST_CASE_TEMPLATE("it slows down for a bend and drives through it", Planner, AL
 }
 
 TEST_CASE_TEMPLATE("it stops behind a standing vehicle, or passes it in another lane", Planner, STEADY_PLANNERS) {
-  for (std::uint64_t seed = 0; seed < runs(); ++seed) {
+  for (std::uint64_t seed = 0; seed < support::runs(5); ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, 2, 0);
     int const lanes = seed % 2 == 0 ? 1 : 2;
     double const lane = lanes == 1 ? -1.75 : -5.25, at = Uniform{120.0, 160.0}(random);
     auto const planner = quick<Planner>();
-    Sim<Planner> world(support::straight_road(lanes, 600.0), {.seed = seed});
+    Sim world(support::straight_road(lanes, 600.0), {.seed = seed});
     world.add({.position = {30.0, lane}, .speed = Uniform{8.0, 15.0}(random), .behavior = planner});
     world.add({.position = {at, lane},
                .shape = seed % 3 == 0 ? geometry::truck() : geometry::car(),
@@ -177,11 +172,11 @@ TEST_CASE_TEMPLATE("it stops behind a standing vehicle, or passes it in another 
 TEST_CASE_TEMPLATE("it merges into traffic and gets to its goal", Planner, ALL_PLANNERS) {
   MergingSite const sites[] = {find_merging_site(support::own_map("merging.xodr")),
                                find_merging_site(support::own_map("lane_drop.xodr"))};
-  for (std::uint64_t seed = 0; seed < runs(4); ++seed) {
+  for (std::uint64_t seed = 0; seed < support::runs(4); ++seed) {
     CAPTURE(seed);
     auto const planner = quick<Planner>();
     auto scenario =
-        with_behaviors<Sim<Planner>>(sites[seed % 2].sample(30, static_cast<std::uint32_t>(seed / 2)),
+        with_behaviors<Sim>(sites[seed % 2].sample(30, static_cast<std::uint32_t>(seed / 2)),
                                      [](auto const& agent) { return std::get<IdmClassic>(agent.behavior); });
     for (auto& agent : scenario.agents)
       if (agent.id.given() == scenario.ego) agent.behavior = planner;
@@ -195,11 +190,11 @@ TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_P
   // A search with few iterations finds the change of lanes in some of the runs.
   constexpr bool passes = std::is_same_v<Planner, PolicyTree> || std::is_same_v<Planner, Frenet>;
   std::uint64_t passed = 0;
-  for (std::uint64_t seed = 0; seed < runs(); ++seed) {
+  for (std::uint64_t seed = 0; seed < support::runs(5); ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, 3, 0);
     auto const planner = quick<Planner>();
-    Sim<Planner> world(support::straight_road(2, 900.0), {.seed = seed});
+    Sim world(support::straight_road(2, 900.0), {.seed = seed});
     double const slow = Uniform{3.0, 7.0}(random);
     auto const begin = Uniform{60.0, 80.0}(random), beside = Uniform{0.0, 20.0}(random);
     world.add({.position = {30.0, -5.25}, .speed = Uniform{8.0, 14.0}(random), .behavior = planner});
@@ -239,9 +234,9 @@ int arrivals(int wanted, Sample const& sample, MakeEgo const& make_ego) {
   for (std::uint32_t number = 0, run = 0; run < static_cast<std::uint32_t>(wanted); ++number) {
     CAPTURE(number);
     auto const drawn = sample(number);
-    using Sim = World<BehaviorSet<Planner, Driver>, InterpolateExecution, SingleTrack>;
+    using Own = World<BehaviorSet<Planner, Driver>, InterpolateExecution, SingleTrack>;
     auto scenario =
-        with_behaviors<Sim>(drawn, [](auto const& spec) { return std::get<Driver>(spec.behavior.given()); });
+        with_behaviors<Own>(drawn, [](auto const& spec) { return std::get<Driver>(spec.behavior.given()); });
     auto const ego = std::ranges::find(scenario.agents, scenario.ego, [](auto const& s) { return *s.id.given(); });
     if (!make_ego(*ego)) continue;
     ++run;
@@ -263,7 +258,7 @@ int arrivals(int wanted, Sample const& sample, MakeEgo const& make_ego) {
 
 TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, Frenet) {
   auto const site = find_highway_site(support::own_map("highway_exit.xodr"));
-  auto const count = static_cast<int>(runs(8));
+  auto const count = static_cast<int>(support::runs(8));
   int const arrived = arrivals<Planner, Mobil>(
       count, [&](std::uint32_t number) { return site.sample(3, number); },
       [](auto& ego) {
@@ -293,7 +288,7 @@ TEST_CASE_TEMPLATE(
       CAPTURE(lights);
       auto const site = find_junction_site(support::own_map(name));
       if (lights && site.map->lights().empty()) continue;
-      auto const count = static_cast<int>(runs(4));
+      auto const count = static_cast<int>(support::runs(4));
       int const arrived = arrivals<Planner, Intersection>(
           count, [&](std::uint32_t number) { return site.sample(3, number, {.lights = lights}); },
           [](auto& ego) {

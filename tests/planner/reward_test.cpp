@@ -225,19 +225,20 @@ TEST_CASE("evaluators see Frenet's courses as they see a world") {
   CHECK(least_gap < 46.0);
 }
 
-TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a search plans by", Evaluator, Collision,
-                   AtFaultCollision, AnyCollision, OffRoad, OncomingLane, AtGoal, PastJunctions, Progress,
-                   SpeedDeviation, SpeedLimitExcess, LaneOffset, Acceleration, HardBraking, Gap, TimeToCollision,
-                   RequiredDeceleration, LaneChangeUrgency, OthersBraking, Closeness) {
-  using Term = Reward<Evaluator>;
-  using TermPlanner = Mcts<PredictionWorld, MacroActions, Term>;
+#define EVALUATORS                                                                                                     \
+  Collision, AtFaultCollision, AnyCollision, OffRoad, OncomingLane, AtGoal, PastJunctions, Progress, SpeedDeviation,   \
+      SpeedLimitExcess, LaneOffset, Acceleration, HardBraking, Gap, TimeToCollision, RequiredDeceleration,             \
+      LaneChangeUrgency, OthersBraking, Closeness
+
+TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a search plans by", Evaluator, EVALUATORS) {
+  using TermPlanner = Mcts<PredictionWorld, MacroActions, Reward<EVALUATORS>>;  // one search: each takes 2 s to compile
   World<BehaviorSet<TermPlanner, IdmClassic>, InterpolateExecution, SingleTrack> world(
       support::straight_road(2, 600.0));
   TermPlanner planner;
   planner.options.budget.iterations = 50;
   planner.reward.template term<Evaluator>() = {.weight = 1.0, .per_second = true};
   auto const id = world.add({.position = {60, -5.25}, .speed = 12, .behavior = planner});
-  typename TermPlanner::Workspace workspace;
+  TermPlanner::Workspace workspace;
   for (auto const& candidate : planner.think(world.observe(id), {}, workspace).candidates)
     CHECK(std::isfinite(candidate.score));
   REQUIRE(world.step(0.2));

@@ -1,6 +1,5 @@
 // Sampled traffic at junctions, as the example of junctions draws it: cars, vans and trucks on maps loaded without
-// options. Nobody collides, and everybody gets through. CAMBIUM_INTERSECTION_RUNS is how many situations are drawn on
-// each map.
+// options. Nobody collides, and everybody gets through.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
+#include "../support/scale.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/driving.hpp"
@@ -26,11 +26,6 @@
 using namespace cambium;
 
 namespace {
-
-std::uint32_t runs(std::uint32_t usual) {
-  char const* const asked = std::getenv("CAMBIUM_INTERSECTION_RUNS");
-  return asked ? static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10)) : usual;
-}
 
 struct Tally {
   std::uint32_t runs = 0, collisions = 0, stuck = 0, on_red = 0;
@@ -120,22 +115,22 @@ void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& na
 
 TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, vans and trucks") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
-    check_all_pass(support::own_map(name), name, runs(1000));
+    check_all_pass(support::own_map(name), name, support::runs(1000));
 }
 
 TEST_CASE("so it is at shorter and longer steps, with a third of trucks where these fit") {
   for (char const* name : {"roundabout.xodr", "intersection_3way.xodr", "intersection_4way.xodr"})
     for (double const dt : {0.1, 0.5})
-      check_all_pass(support::own_map(name), name, runs(150), {.mix = {.truck_share = 0.35, .van_share = 0.15}}, dt);
+      check_all_pass(support::own_map(name), name, support::runs(150), {.mix = {.truck_share = 0.35, .van_share = 0.15}}, dt);
 }
 
 TEST_CASE("so it is with up to 30 vehicles, as many as fit before the junctions, at shorter and longer steps") {
   JunctionTraffic const dense{.most_vehicles = 30};
   for (double const dt : {0.1, 0.5}) {
     for (char const* name : {"roundabout.xodr", "intersection_3way.xodr", "intersection_4way.xodr"})
-      check_all_pass(support::own_map(name), name, runs(100), dense, dt);
+      check_all_pass(support::own_map(name), name, support::runs(100), dense, dt);
     for (std::string const name : {"simple_3way_intersection_lht", "fabriksgatan", "route_strategy_test_road"})
-      if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(50), dense, dt);
+      if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, support::runs(50), dense, dt);
   }
 }
 
@@ -160,21 +155,21 @@ TEST_CASE("no three vehicles block each other for good that leave their places t
 TEST_CASE("the same holds under traffic lights, and nobody crosses a stop line on red") {
   auto const map = support::own_map("intersection_4way.xodr");
   REQUIRE(map->lights().size() == 2);
-  check_all_pass(map, "intersection_4way.xodr with lights", runs(1000), {.lights = true});
+  check_all_pass(map, "intersection_4way.xodr with lights", support::runs(1000), {.lights = true});
 }
 
 TEST_CASE("so it is among bicycles, which keep to the side of their lanes, in sampled traffic") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
-    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(1000),
+    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), support::runs(1000),
                    {.mix = {.truck_share = 0.15, .van_share = 0.15, .bicycle_share = 0.3}});
 }
 
 TEST_CASE("so it is at the junctions of the corpus") {
   for (std::string const name : {"simple_3way_intersection_lht", "multi_intersections", "route_strategy_test_road",
                                  "parking_demo", "4way_intersection", "threeway_intersection", "fabriksgatan"})
-    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(60));
+    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, support::runs(60));
   for (std::string const name : {"libopendrive_test", "Town04"})
-    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(20));
+    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, support::runs(20));
 }
 
 TEST_CASE("who reaches the end of its route sees a vehicle beyond it that still reaches back") {

@@ -1,5 +1,4 @@
 // Lane changes and zip merges of drivers who see with errors, late, or not everybody; and on real roads.
-// CAMBIUM_SAMPLES=100 takes that many times the seeds.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -10,7 +9,7 @@
 
 #include "../behavior/lane_traffic_fixtures.hpp"
 #include "../support/corpus.hpp"
-#include "../support/samples.hpp"
+#include "../support/scale.hpp"
 #include "cambium/behavior/lane_change/zip_merge.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/map/opendrive.hpp"
@@ -28,8 +27,6 @@ using Observer =
     cb::ObserverSet<cb::PerfectObserver, cb::ParametricObserver, cb::DelayedObserver<4>, cb::OccludedObserver>;
 using World = cb::World<cb::BehaviorSet<cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge>, cb::InterpolateExecution,
                         cb::SingleTrack, Observer>;
-
-std::uint64_t samples(std::uint64_t usual) { return usual * support::sample_factor(); }
 
 struct Sight {
   char const* name;
@@ -128,7 +125,7 @@ TEST_CASE("drivers that see with errors, late or only in part change lanes witho
     for (auto const& sight : sights()) {
       int changes = 0;
       bool const is_slow = std::holds_alternative<cb::OccludedObserver>(sight.observer);
-      for (std::uint64_t seed = 1; seed <= samples(is_slow ? 1 : 4); ++seed) {
+      for (std::uint64_t seed = 1; seed <= support::runs(is_slow ? 1 : 4); ++seed) {
         int const lanes = seed % 2 == 0 ? 3 : 4;
         World world(support::straight_road(lanes, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
         fill(world, lanes_in_direction(world.map(), world.map().roads()[0].sections[0], true), 400.0, seed, by_rule,
@@ -151,7 +148,7 @@ TEST_CASE("nobody collides in slow traffic with many trucks and buses") {
     return is_long ? cb::presets::kesting_2010_truck() : cb::presets::kesting_2010_car();
   };
   int changes = 0;
-  for (std::uint64_t seed = 1; seed <= samples(10); ++seed)
+  for (std::uint64_t seed = 1; seed <= support::runs(10); ++seed)
     for (bool const by_rule : {false, true}) {
       int const lanes = seed % 2 == 0 ? 3 : 4;
       World world(support::straight_road(lanes, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
@@ -180,7 +177,7 @@ TEST_CASE("nobody collides on the corpus' roads of several lanes, whatever they 
     } catch (cb::Error const&) {
       continue;  // files that are wrong on purpose
     }
-    std::uint64_t seed = 0, most = samples(3);
+    std::uint64_t seed = 0, most = support::runs(3);
     for (auto const& road : map->roads())
       for (auto const& section : road.sections)
         for (bool const right : {true, false}) {
@@ -210,7 +207,7 @@ TEST_CASE("zip merges come off without collisions where drivers see with errors,
   for (auto const& entry : map->roads()[0].sections[0].lanes)
     if (entry.number < 0) last[static_cast<std::size_t>(-entry.number)] = entry.id;
   for (auto const& sight : sights())
-    for (std::uint64_t seed = 1; seed <= samples(2); ++seed) {
+    for (std::uint64_t seed = 1; seed <= support::runs(2); ++seed) {
       cb::RandomStream random(seed, 0, 0);
       World world(map, {.seed = seed});
       double s = 380.0;
@@ -240,7 +237,7 @@ TEST_CASE("nobody without a goal passes the slow in an exit lane, and then stand
   REQUIRE(site.exits.size() == 1);
   int passed = 0;
   for (bool const keeps_right : {true, false})
-    for (std::uint64_t number = 20; number < 20 + samples(14); ++number) {
+    for (std::uint64_t number = 20; number < 20 + support::runs(14); ++number) {
       auto scenario = site.sample(771, static_cast<std::uint32_t>(number));
       for (auto& spec : scenario.agents) {
         auto driver = *std::get_if<cb::Mobil>(&spec.behavior.given());

@@ -1,16 +1,16 @@
 // Dense traffic with many trucks merges, and follows leaders that brake and swing, without a collision, whatever the
-// driver model and the step. CAMBIUM_MERGING_RUNS is how many situations are drawn for each map, model and step.
+// driver model and the step.
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string>
 #include <type_traits>
 #include <variant>
 
 #include "../support/maps.hpp"
+#include "../support/scale.hpp"
 #include "cambium/behavior/following/adaptive_cruise_control.hpp"
 #include "cambium/behavior/following/idm_lane_tracking.hpp"
 #include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
@@ -24,11 +24,6 @@
 using namespace cambium;
 
 namespace {
-
-std::uint32_t runs() {
-  char const* const asked = std::getenv("CAMBIUM_MERGING_RUNS");
-  return asked ? static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10)) : 150;
-}
 
 /// The sampled driver as another model.
 template <class Behavior>
@@ -75,7 +70,7 @@ TEST_CASE_TEMPLATE(
   for (double const dt : {0.1, 0.2, 0.5}) {
     std::uint32_t collisions = 0;
     double slowest = 100.0;
-    for (std::uint32_t number = 0; number < runs(); ++number) {
+    for (std::uint32_t number = 0; number < support::runs(150); ++number) {
       RandomStream random(21, number, 0);
       double const free_speed = Uniform{8.0, 30.0}(random);
       LaneTraffic const traffic{.begin = 20.0,
@@ -115,7 +110,7 @@ TEST_CASE_TEMPLATE("dense traffic with a third of trucks merges without a collis
     auto const site = find_merging_site(support::own_map(name));
     for (double const dt : {0.1, 0.2, 0.5}) {
       std::uint32_t collisions = 0, merged = 0;
-      for (std::uint32_t number = 0; number < runs(); ++number) {
+      for (std::uint32_t number = 0; number < support::runs(150); ++number) {
         auto const scenario = with_behaviors<Sim>(
             site.sample(20, number, {.mix = {.truck_share = 0.35}}),
             [](auto const& agent) { return driver<Behavior>(std::get<IdmClassic>(agent.behavior)); });
@@ -131,7 +126,7 @@ TEST_CASE_TEMPLATE("dense traffic with a third of trucks merges without a collis
       CAPTURE(name);
       CAPTURE(dt);
       CHECK(collisions == 0);
-      CHECK(merged > 0.8 * runs());
+      CHECK(merged > 0.8 * support::runs(150));
     }
   }
 }

@@ -161,12 +161,19 @@ std::string message_of(auto const& run) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("a search goes on in its kept tree after it was saved and restored", Planner,
-                   Search<MacroActions, Puct>, Search<MotionPrimitives, Ucb1, RandomRollout>,
-                   Search<MacroActions, Ucb1Tuned>, Search<MacroActions, Exp3>,
-                   Search<MacroActions, RegretMatching, RandomRollout>, Search<DriverActions<Intersection>, Puct>,
-                   Search<SampledInputs, Ucb1Tuned, RandomRollout>, Search<SampledInputs, Puct, RandomRollout>,
-                   Search<MacroActions, Puct, PolicyRollout, HumanDriver<IdmClassic>>) {
+#ifdef CAMBIUM_QUICK_TESTS  // each takes 3 s to compile: of each kind of actions one
+#define SEARCHES                                                                 \
+  Search<MacroActions, Exp3>, Search<MotionPrimitives, Ucb1, RandomRollout>,     \
+      Search<SampledInputs, Puct, RandomRollout>, Search<DriverActions<Intersection>, Ucb1Tuned>
+#else
+#define SEARCHES                                                                                             \
+  Search<MacroActions, Puct>, Search<MotionPrimitives, Ucb1, RandomRollout>, Search<MacroActions, Ucb1Tuned>, \
+      Search<MacroActions, Exp3>, Search<MacroActions, RegretMatching, RandomRollout>,                        \
+      Search<DriverActions<Intersection>, Puct>, Search<SampledInputs, Ucb1Tuned, RandomRollout>,             \
+      Search<SampledInputs, Puct, RandomRollout>, Search<MacroActions, Puct, PolicyRollout, HumanDriver<IdmClassic>>
+#endif
+
+TEST_CASE_TEMPLATE("a search goes on in its kept tree after it was saved and restored", Planner, SEARCHES) {
   auto const map = support::straight_road(2, 600.0), again = support::straight_road(2, 600.0);
   for (int const threads : {1, 2}) {
     CAPTURE(threads);

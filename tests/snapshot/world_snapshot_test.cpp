@@ -342,11 +342,13 @@ using Predicted = World<BehaviorSet<MacroActions, DriverActions<Intersection>, I
 using Search = Mcts<Predicted, DriverActions<Intersection>, TrafficReward, Intersection>;
 using Learning = Mcts<Predicted, DriverActions<Intersection>, TrafficReward, HeadwayHypotheses<Intersection>>;
 
+#define PLANNERS \
+  Search, Learning, PolicyTreePlanner<Predicted>, ProposalPlanner<Predicted>, FrenetPlanner<Predicted>
+using Road = World<BehaviorSet<PLANNERS, IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
+
 }  // namespace
 
-TEST_CASE_TEMPLATE("a planner in traffic plans on bit by bit", Planner, Search, Learning, PolicyTreePlanner<Predicted>,
-                   ProposalPlanner<Predicted>, FrenetPlanner<Predicted>) {
-  using Road = World<BehaviorSet<Planner, IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
+TEST_CASE_TEMPLATE("a planner in traffic plans on bit by bit", Planner, PLANNERS) {
   auto const map = support::own_map("merging.xodr"), again = support::own_map("merging.xodr");
   for (std::uint32_t seed = 0; seed < 30; ++seed) {
     CAPTURE(seed);
@@ -359,7 +361,7 @@ TEST_CASE_TEMPLATE("a planner in traffic plans on bit by bit", Planner, Search, 
     }
     world.add({.position = {60, -5.25}, .speed = Uniform{5.0, 15.0}(random), .behavior = planner});
     for (int i = 0; i < 6; ++i) {
-      typename Road::Behavior driver = IdmClassic{};
+      Road::Behavior driver = IdmClassic{};
       if (i % 2 == 0) driver = Mobil{};
       world.add({.position = {20.0 + 30.0 * i, -1.75}, .speed = Uniform{5.0, 15.0}(random), .behavior = driver});
     }

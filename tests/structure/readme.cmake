@@ -20,11 +20,8 @@ function(add_readme_program name expected source)
   write_if_new(${structure_binary}/${target}.cpp "${source}")
   add_executable(${target} ${structure_binary}/${target}.cpp)
   target_link_libraries(${target} PRIVATE readme_options)
-  add_dependencies(cambium_tests ${target})
-  add_test(NAME ${name}
-    COMMAND ${CMAKE_COMMAND} "-DPROGRAM=$<TARGET_FILE:${target}>" "-DEXPECTED=${expected}"
-      -P ${structure_source}/run_readme_program.cmake
-    WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  add_program_test(${name} ${target} ${CMAKE_COMMAND} "-DPROGRAM=$<TARGET_FILE:${target}>" "-DEXPECTED=${expected}"
+    -P ${structure_source}/run_readme_program.cmake)
 endfunction()
 
 # add_readme_programs(README): those of one file.

@@ -27,7 +27,7 @@ endif()
 # add_build_test(NAME TARGET): a ctest that builds a target of this build tree.
 function(add_build_test name target)
   add_test(NAME ${name}
-    COMMAND ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target ${target} --parallel 2 ${keep_going})
+    COMMAND ${timed} test:${name} ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target ${target} --parallel 2 ${keep_going})
   # Compiling hundreds of headers may take a slow machine longer than the 10 minutes that a test has elsewhere.
   set_tests_properties(${name} PROPERTIES RESOURCE_LOCK cambium_build_tree TIMEOUT 2400)
 endfunction()
@@ -83,10 +83,14 @@ function(reach variable header)
   set(${variable} "${all}" PARENT_SCOPE)
 endfunction()
 
+left_to_all("each header alone" "300 compilations; here those of whole rooms")
 set(all_headers "")
 set(alone_stamps "")
 foreach(header IN LISTS headers)
   string(APPEND all_headers "#include <${header}>\n")
+  if(CAMBIUM_QUICK_TESTS AND NOT header MATCHES "^cambium/[a-z]+\\.hpp$" AND NOT header IN_LIST alone_bases)
+    continue()
+  endif()
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/include/${header})
   string(REGEX REPLACE "[/.]" "_" name ${header})
   set(source ${structure_binary}/alone/${name}.cpp)
@@ -114,37 +118,51 @@ add_build_test(structure.headers_alone structure_headers_alone)
 
 # All headers twice in one program: compiled once, the object linked beside a copy of itself.
 write_if_new(${structure_binary}/all_headers.cpp "${all_headers}")
-write_if_new(${structure_binary}/twice.cpp "int main() {}\n")
-add_library(structure_all_headers OBJECT EXCLUDE_FROM_ALL ${structure_binary}/all_headers.cpp)
-target_link_libraries(structure_all_headers PRIVATE cambium::benchmark)
-target_compile_options(structure_all_headers PRIVATE -O0 ${CAMBIUM_WARNINGS} -Werror)
-add_custom_command(OUTPUT ${structure_binary}/all_headers_again.o
-  COMMAND ${CMAKE_COMMAND} -E copy $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o
-  DEPENDS structure_all_headers $<TARGET_OBJECTS:structure_all_headers> VERBATIM)
-add_executable(structure_headers_twice EXCLUDE_FROM_ALL ${structure_binary}/twice.cpp
-  $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o)
-target_link_libraries(structure_headers_twice PRIVATE cambium::benchmark)
-add_build_test(structure.headers_twice structure_headers_twice)
+left_to_all(structure.headers_twice "compiles all headers; here structure.two_units.mixed, of two sources")
+if(NOT CAMBIUM_QUICK_TESTS)
+  write_if_new(${structure_binary}/twice.cpp "int main() {}\n")
+  add_library(structure_all_headers OBJECT EXCLUDE_FROM_ALL ${structure_binary}/all_headers.cpp)
+  target_link_libraries(structure_all_headers PRIVATE cambium::benchmark)
+  target_compile_options(structure_all_headers PRIVATE -O0 ${CAMBIUM_WARNINGS} -Werror)
+  add_custom_command(OUTPUT ${structure_binary}/all_headers_again.o
+    COMMAND ${CMAKE_COMMAND} -E copy $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o
+    DEPENDS structure_all_headers $<TARGET_OBJECTS:structure_all_headers> VERBATIM)
+  add_executable(structure_headers_twice EXCLUDE_FROM_ALL ${structure_binary}/twice.cpp
+    $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o)
+  target_link_libraries(structure_headers_twice PRIVATE cambium::benchmark)
+  add_build_test(structure.headers_twice structure_headers_twice)
+endif()
 
 # A program of two translation units, one of which makes the map: header-only, with cold code compiled apart, and with one
 # unit of each kind.
 add_library(structure_drive OBJECT EXCLUDE_FROM_ALL ${structure_source}/two_units/drive.cpp)
 target_link_libraries(structure_drive PRIVATE cambium::cambium)
 target_compile_options(structure_drive PRIVATE -O0 ${CAMBIUM_WARNINGS} -Werror)
-foreach(kind header_only compiled mixed)
+left_to_all("structure.two_units.header_only, .compiled" "here .mixed, of one unit of each kind")
+set(kinds mixed)
+if(NOT CAMBIUM_QUICK_TESTS)
+  list(APPEND kinds header_only compiled)
+endif()
+foreach(kind IN LISTS kinds)
   add_executable(structure_two_units_${kind} EXCLUDE_FROM_ALL ${structure_source}/two_units/main.cpp)
   target_compile_definitions(structure_two_units_${kind} PRIVATE CAMBIUM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   target_compile_options(structure_two_units_${kind} PRIVATE -O0 ${CAMBIUM_WARNINGS} -Werror)
-  add_dependencies(cambium_tests structure_two_units_${kind})
-  add_test(NAME structure.two_units.${kind} COMMAND structure_two_units_${kind})
+  add_program_test(structure.two_units.${kind} structure_two_units_${kind} $<TARGET_FILE:structure_two_units_${kind}>)
 endforeach()
-target_link_libraries(structure_two_units_header_only PRIVATE structure_drive cambium::opendrive)
-target_sources(structure_two_units_compiled PRIVATE ${structure_source}/two_units/drive.cpp)
-target_link_libraries(structure_two_units_compiled PRIVATE cambium::compiled)
-target_link_libraries(structure_two_units_mixed PRIVATE structure_drive cambium::compiled)
+target_link_libraries(structure_two_units_mixed PRIVATE structure_drive cambium::compiled_opendrive)
+if(NOT CAMBIUM_QUICK_TESTS)
+  target_link_libraries(structure_two_units_header_only PRIVATE structure_drive cambium::opendrive)
+  target_sources(structure_two_units_compiled PRIVATE ${structure_source}/two_units/drive.cpp)
+  target_link_libraries(structure_two_units_compiled PRIVATE cambium::compiled)
+endif()
 
 # All headers at once, free of warnings under each compiler there is; g++ has just compiled them where it is the project's.
-foreach(name g++ clang++-14 clang++-19)
+left_to_all("structure.warnings.*" "all headers under g++ and two clangs; here what the tests compile, by the project's compiler")
+set(warning_compilers "")
+if(NOT CAMBIUM_QUICK_TESTS)
+  set(warning_compilers g++ clang++-14 clang++-19)
+endif()
+foreach(name IN LISTS warning_compilers)
   if(name STREQUAL "g++" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     add_build_test(structure.warnings.${name} structure_all_headers)
   elseif(CAMBIUM_CHECK_${name})
@@ -157,19 +175,51 @@ foreach(name g++ clang++-14 clang++-19)
   endif()
 endforeach()
 
-# Programs that must not compile, and the sentence that each must get, from one compiler of each kind.
-set(wrong_compilers ${CMAKE_CXX_COMPILER})
-if(CAMBIUM_CHECK_g++)
-  set(wrong_compilers ${CAMBIUM_CHECK_g++})
+# Programs that must not compile, and the sentence that each must get, from one compiler of each kind; in the quick size
+# from the quickest. What they include is precompiled.
+left_to_all("structure.wrong.* by a second compiler" "here by clang++ where it is there, else by g++")
+set(wrong_compilers "")
+foreach(name clang++-14 clang++-19)
+  if(CAMBIUM_CHECK_${name} AND NOT wrong_compilers)
+    set(wrong_compilers ${CAMBIUM_CHECK_${name}})
+  endif()
+endforeach()
+if(NOT wrong_compilers OR NOT CAMBIUM_QUICK_TESTS)
+  if(CAMBIUM_CHECK_g++)
+    list(APPEND wrong_compilers ${CAMBIUM_CHECK_g++})
+  else()
+    list(APPEND wrong_compilers ${CMAKE_CXX_COMPILER})
+  endif()
 endif()
-if(CAMBIUM_CHECK_clang++-14)
-  list(APPEND wrong_compilers ${CAMBIUM_CHECK_clang++-14})
-elseif(CAMBIUM_CHECK_clang++-19)
-  list(APPEND wrong_compilers ${CAMBIUM_CHECK_clang++-19})
-endif()
+list(REMOVE_DUPLICATES wrong_compilers)
+set(wrong_header ${structure_binary}/wrong/all.hpp)
+write_if_new(${wrong_header} "#include <cambium/cambium.hpp>\n#include <cambium/snapshot.hpp>\n")
+set(wrong_options -DCAMBIUM_COMPILED -O0)
+set(wrong_headers "")
+set(wrong_commands "")
+foreach(compiler IN LISTS wrong_compilers)
+  if(compiler MATCHES "clang")
+    set(precompiled ${structure_binary}/wrong/all.pch)
+    # clang instantiates templates in a check of the syntax, too.
+    set(command ${compiler} @${compile_flags} ${wrong_options} -fsyntax-only -include-pch ${precompiled})
+  else()
+    set(precompiled ${wrong_header}.gch)
+    set(command ${compiler} @${compile_flags} ${wrong_options} -S -o /dev/null -include ${wrong_header})
+  endif()
+  add_custom_command(OUTPUT ${precompiled}
+    COMMAND ${compiler} @${compile_flags} ${wrong_options} -x c++-header ${wrong_header} -MMD -MT ${precompiled}
+      -MF ${precompiled}.d -o ${precompiled}
+    DEPENDS ${wrong_header} ${compile_flags} DEPFILE ${precompiled}.d COMMENT "header of the wrong programs" VERBATIM)
+  list(APPEND wrong_headers ${precompiled})
+  list(JOIN command "|" command)
+  list(APPEND wrong_commands ${command})
+endforeach()
+add_custom_target(structure_wrong_headers DEPENDS ${wrong_headers})
+add_build_test(structure.wrong_headers structure_wrong_headers)
+set_tests_properties(structure.wrong_headers PROPERTIES FIXTURES_SETUP structure_wrong_headers)
 function(add_wrong_program name source)
-  add_test(NAME structure.wrong.${name}
-    COMMAND bash ${structure_source}/wrong.sh ${compile_flags} ${source} ${wrong_compilers})
+  add_test(NAME structure.wrong.${name} COMMAND ${timed} test:structure.wrong.${name} bash ${structure_source}/wrong.sh ${source} ${wrong_commands})
+  set_tests_properties(structure.wrong.${name} PROPERTIES FIXTURES_REQUIRED structure_wrong_headers)
 endfunction()
 file(GLOB programs CONFIGURE_DEPENDS ${structure_source}/wrong/*.cpp)
 foreach(program IN LISTS programs)
@@ -186,7 +236,7 @@ set_tests_properties(structure.wrong.harness_no_sentence PROPERTIES PASS_REGULAR
 # A project that uses cambium, by add_subdirectory and by find_package.
 function(add_consumer name)
   add_test(NAME structure.consumer.${name}
-    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${structure_source}/consumer ${structure_binary}/consumer_${name}
+    COMMAND ${timed} test:structure.consumer.${name} ${CMAKE_CTEST_COMMAND} --build-and-test ${structure_source}/consumer ${structure_binary}/consumer_${name}
       --build-generator ${CMAKE_GENERATOR} --build-noclean
       --build-options -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
         -DCONSUMER_VERSION=${PROJECT_VERSION} ${ARGN}
@@ -222,12 +272,17 @@ if(CAMBIUM_INSTALL)
   set_tests_properties(structure.install_anew PROPERTIES FIXTURES_SETUP cambium_install)
   set_tests_properties(structure.install PROPERTIES FIXTURES_SETUP cambium_install DEPENDS structure.install_anew)
   set(package -DCMAKE_PREFIX_PATH=${install_tree})
-  add_consumer(package ${package} "-DCONSUMER_COMPONENTS=opendrive$<SEMICOLON>compiled"
-    "-DCONSUMER_TARGETS=geometry$<SEMICOLON>compiled")
+  left_to_all("cambium::compiled in structure.consumer.package" "compiles all of it; here none of it, but in all other tests")
+  set(compiled compiled)
+  if(CAMBIUM_QUICK_TESTS)
+    set(compiled )
+  endif()
+  add_consumer(package ${package} "-DCONSUMER_COMPONENTS=opendrive$<SEMICOLON>${compiled}"
+    "-DCONSUMER_TARGETS=geometry$<SEMICOLON>${compiled}")
   add_consumer(package_without_pugixml ${package} ${no_pugixml} -DCONSUMER_TARGETS=cambium)
   add_consumer(package_lacks_opendrive ${package} ${no_pugixml} -DCONSUMER_COMPONENTS=opendrive)
   add_consumer(package_links_opendrive_without_pugixml ${package} ${no_pugixml} -DCONSUMER_TARGETS=opendrive)
-  add_test(NAME structure.installed_files COMMAND bash ${structure_source}/installed.sh ${PROJECT_SOURCE_DIR} ${install_tree}
+  add_test(NAME structure.installed_files COMMAND ${timed} test:structure.installed_files bash ${structure_source}/installed.sh ${PROJECT_SOURCE_DIR} ${install_tree}
     ${CMAKE_CXX_COMPILER} ${check_clang})
   set_tests_properties(structure.installed_files PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
   set_tests_properties(structure.consumer.package structure.consumer.package_without_pugixml

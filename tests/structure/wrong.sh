@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# wrong.sh FLAGS SOURCE COMPILER...: passes when every compiler rejects SOURCE with the phrase of its first line,
-# `// expect: <phrase>`, and with no other sentence of cambium's, but for that of a line `// also: <phrase>`.
+# wrong.sh SOURCE COMPILER...: passes when every compiler, a command and its options with | between them, rejects SOURCE
+# with the phrase of its first line, `// expect: <phrase>`, and with no other sentence of cambium's, but for that of a line
+# `// also: <phrase>`.
 set -euo pipefail
-flags=$1
-source=$2
-shift 2
+source=$1
+shift
 
 first=$(head -n 1 "$source")
 phrase=${first#// expect: }
@@ -16,8 +16,9 @@ fi
 also=$(sed -n '2s,^// also: ,,p' "$source")
 also=${also:-$phrase}
 for compiler in "$@"; do
-  # Not -fsyntax-only: g++ would leave function templates uninstantiated. Without cold code, for that is quicker.
-  if output=$("$compiler" "@$flags" -DCAMBIUM_COMPILED -O0 -S -o /dev/null "$source" 2>&1); then
+  IFS='|' read -r -a words <<<"$compiler"
+  compiler=${words[0]}
+  if output=$("${words[@]}" "$source" 2>&1); then
     echo "$source: $compiler: it compiles, but must not"
     exit 1
   fi
