@@ -56,6 +56,7 @@ have_package() {
     libboost-serialization-dev) have_library boost_serialization ;;
     libboost-mpi-dev) have_header boost/mpi.hpp ;;
     openmpi-bin) have mpirun ;;
+    libclang-rt-19-dev) compgen -G '/usr/lib/llvm-19/lib/clang/*/lib/*/libclang_rt.fuzzer*' >/dev/null ;;
     doctest-dev) have_header doctest/doctest.h ;;
     libbenchmark-dev) have_header benchmark/benchmark.h ;;
     *) have "$1" ;;
@@ -185,7 +186,9 @@ configure() {
       options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=$root/tests/timed")
     fi
   fi
-  if [[ $part == TESTS ]]; then options+=(-DCAMBIUM_BUILD_EXAMPLES=ON "-DCAMBIUM_QUICK_TESTS=${quick:-OFF}"); fi
+  if [[ $part == TESTS ]]; then
+    options+=(-DCAMBIUM_BUILD_EXAMPLES=ON "-DCAMBIUM_QUICK_TESTS=${quick:-OFF}" "-DCMAKE_CXX_LINKER_LAUNCHER=$root/tests/timed")
+  fi
   rm -f "$build/.configured_$part"
   note "configuring"
   run_quietly cmake -S "$root" -B "$build" "${options[@]}" || exit 1

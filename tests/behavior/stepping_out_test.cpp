@@ -121,8 +121,8 @@ TEST_CASE_TEMPLATE("a driver who can stop does not hit a pedestrian who steps on
     braked += can_stop && hardest < -0.5;
     CHECK(world.state(id).x > x + 20.0);  // and drives on afterwards
   }
-  CHECK(could_stop > 30);
-  CHECK(braked > 10);
+  CHECK(2 * could_stop > static_cast<int>(support::runs(60)));
+  CHECK(6 * braked > static_cast<int>(support::runs(60)));
 }
 
 TEST_CASE("a driver brakes comfortably for a pedestrian still beside the road, and less hard when it is in the lane") {

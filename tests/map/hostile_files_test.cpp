@@ -106,7 +106,7 @@ TEST_CASE("a damaged file gives a map on which traffic runs, or a MapError, and 
   for (std::uint32_t i = 0; i < files.size(); ++i) {
     auto const count = damage(files[i], i, support::runs(200));
     MESSAGE(files[i].filename().string() << ": " << count.maps << " maps, " << count.errors << " errors");
-    CHECK(count.maps > 80);
-    CHECK(count.errors > 2);
+    CHECK(count.maps > 0.4 * support::runs(200));
+    CHECK(count.errors > 0.01 * support::runs(200));
   }
 }

@@ -147,7 +147,7 @@ TEST_CASE("every row of the links tables is a link of the map, and every link be
   if (!folder) return;
   int rows = 0;
   auto const maps = corpus::maps(*folder);
-  CHECK(maps.size() == 28);
+  CHECK(maps.size() >= 28);
   for (auto const& path : maps) {
     CAPTURE(path.filename().string());
     auto const map = cambium::load_opendrive(path.string()).map;
