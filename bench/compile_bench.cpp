@@ -45,7 +45,9 @@ struct Row {
   Cost cost;
   std::optional<double> budget_s{}, budget_mb{};
 
-  [[nodiscard]] bool kept() const { return !(budget_s && cost.user_s > *budget_s) && !(budget_mb && cost.memory_mb > *budget_mb); }
+  [[nodiscard]] bool kept() const {
+    return !(budget_s && cost.user_s > *budget_s) && !(budget_mb && cost.memory_mb > *budget_mb);
+  }
 };
 
 /// A folder of one's own, removed in the end.
@@ -141,7 +143,9 @@ std::vector<Unit> units(fs::path const& root) {
                         {"reference/boost_geometry", including("boost/geometry.hpp")}};
   for (auto const& [header, seconds] : std::initializer_list<std::pair<char const*, double>>{
            {"geometry.hpp", 1.0}, {"map.hpp", 2.0}, {"world.hpp", 2.5}, {"planner.hpp", 3.5}, {"cambium.hpp", 4.5}})
-    all.push_back({"include/" + std::string(header), including("cambium/" + std::string(header)), {},
+    all.push_back({"include/" + std::string(header),
+                   including("cambium/" + std::string(header)),
+                   {},
                    Budget{seconds, seconds, 400.0}});
   auto const first = program_of(root / "README.md", 1);
   auto const planner = program_of(root / "include/cambium/planner/README.md", 1);
@@ -156,7 +160,8 @@ std::vector<Unit> units(fs::path const& root) {
     throw std::runtime_error("world/README.md: the second program lacks its comments that divide it into sources");
   all.push_back({"extern/use", parts.substr(0, instantiation) + parts.substr(use), compiled, Budget{5.0, 6.0, 600.0}});
   all.push_back({"extern/instantiate", parts.substr(0, use), compiled});
-  all.push_back({"planners/compiled", text_of(root / "bench/compile_planners.cpp"), compiled, Budget{12.0, 22.0, 1000.0}});
+  all.push_back(
+      {"planners/compiled", text_of(root / "bench/compile_planners.cpp"), compiled, Budget{12.0, 22.0, 1000.0}});
   return all;
 }
 
@@ -198,7 +203,8 @@ void print_headers(Compiler const& compiler, fs::path const& root) {
   std::vector<std::string> headers;
   for (auto const& entry : fs::recursive_directory_iterator(root / "include")) {
     auto const header = fs::relative(entry.path(), root / "include").string();
-    if (entry.path().extension() != ".hpp" || header.find("/detail/") != header.npos || header.ends_with("_impl.hpp")) continue;
+    if (entry.path().extension() != ".hpp" || header.find("/detail/") != header.npos || header.ends_with("_impl.hpp"))
+      continue;
     headers.push_back(header);
   }
   std::map<std::string, double> known;

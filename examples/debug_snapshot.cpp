@@ -113,8 +113,7 @@ struct Types {
 };
 
 Types types_of(cb::SnapshotInfo const& info, std::string const& file) {
-  if (info.component == desk::component)
-    return {&desk::thaw, "desk::thaw"};
+  if (info.component == desk::component) return {&desk::thaw, "desk::thaw"};
   examples::ParameterFile usual;
   std::vector<std::string> known{desk::component};
   for (auto const& driver : benchmark::shipped(usual)) {

@@ -7,13 +7,12 @@ CAMBIUM_INSTANTIATE_WORLD(benchmark::TestedWorld);
 
 namespace benchmark {
 
-Driver driver(std::string name, std::string parameters, std::uint64_t hash,
-              std::function<Tested(Spec const&)> choose) {
-  return {cb::contender_by<Traffic>(
-              std::move(name), std::move(parameters), hash,
-              [choose = std::move(choose)](Spec const& ego, cb::Scenario<Traffic> const&) { return choose(ego); },
-              &freeze),
-          &thaw};
+Driver driver(std::string name, std::string parameters, std::uint64_t hash, std::function<Tested(Spec const&)> choose) {
+  return {
+      cb::contender_by<Traffic>(
+          std::move(name), std::move(parameters), hash,
+          [choose = std::move(choose)](Spec const& ego, cb::Scenario<Traffic> const&) { return choose(ego); }, &freeze),
+      &thaw};
 }
 
 double desired_speed(Spec const& ego) {

@@ -60,7 +60,8 @@ using Proposals = cb::ProposalPlanner<Prediction<cb::IdmProposal, cb::ConstantAc
 using Frenet = cb::FrenetPlanner<Prediction<cb::ConstantAcceleration>>;
 
 /// All behaviours under test: they share a world, so that it is compiled once.
-using Tested = cb::OneOf<cb::IdmClassic, cb::Mobil, cb::Intersection, Expecting, Learning, PolicyTree, Proposals, Frenet>;
+using Tested =
+    cb::OneOf<cb::IdmClassic, cb::Mobil, cb::Intersection, Expecting, Learning, PolicyTree, Proposals, Frenet>;
 using TestedWorld = cb::ContenderWorld<Traffic, Tested>;
 
 /// A behaviour under test, and how to thaw the snapshot of a run that it failed.

@@ -41,7 +41,7 @@ TEST_CASE("presets of drivers are valid and drive as their names say") {
   CHECK(capacity < 2000.0);
 }
 
-#define DRIVERS                                                                                                    \
+#define DRIVERS                                                                                                     \
   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge, \
       cb::Intersection, cb::HumanDriver<cb::Mobil>
 

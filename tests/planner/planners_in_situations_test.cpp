@@ -141,8 +141,7 @@ TEST_CASE_TEMPLATE("it slows down for a bend and drives through it", Planner, AL
     double const curvature = (seed % 2 == 0 ? 1.0 : -1.0) / Uniform{20.0, 60.0}(random);
     auto const line = map::lay_from(
         {}, {{150.0}, {20.0, 0.0, curvature}, {40.0, curvature, curvature}, {20.0, curvature, 0.0}, {200.0}});
-    Sim world(support::map_of({.id = "1", .line = line, .sections = {{.right = map::equal_lanes(1)}}}),
-                       {.seed = seed});
+    Sim world(support::map_of({.id = "1", .line = line, .sections = {{.right = map::equal_lanes(1)}}}), {.seed = seed});
     world.add({.position = {30.0, -1.75}, .speed = Uniform{8.0, 15.0}(random), .behavior = planner});
     auto const seen = drive<Planner>(seed, world, first, planner, 40.0);
     CHECK(seen.lateral < 1.05 * highest_lateral);
@@ -175,9 +174,8 @@ TEST_CASE_TEMPLATE("it merges into traffic and gets to its goal", Planner, ALL_P
   for (std::uint64_t seed = 0; seed < support::runs(4); ++seed) {
     CAPTURE(seed);
     auto const planner = quick<Planner>();
-    auto scenario =
-        with_behaviors<Sim>(sites[seed % 2].sample(30, static_cast<std::uint32_t>(seed / 2)),
-                                     [](auto const& agent) { return std::get<IdmClassic>(agent.behavior); });
+    auto scenario = with_behaviors<Sim>(sites[seed % 2].sample(30, static_cast<std::uint32_t>(seed / 2)),
+                                        [](auto const& agent) { return std::get<IdmClassic>(agent.behavior); });
     for (auto& agent : scenario.agents)
       if (agent.id.given() == scenario.ego) agent.behavior = planner;
     auto world = scenario.make_world();

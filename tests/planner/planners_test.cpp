@@ -191,9 +191,9 @@ std::pair<double, double> times(P const& planner) {
 /// One world for all planners, so that it is compiled once, or one of its own.
 using Planners = BehaviorSet<ALL_PLANNERS, IdmClassic>;
 template <class Planner, class Observer = PerfectObserver>
-using Sim = World<std::conditional_t<Planners::contains<Planner> && Observer::perfect, Planners,
-                                     BehaviorSet<Planner, IdmClassic>>,
-                  InterpolateExecution, SingleTrack, Observer>;
+using Sim = World<
+    std::conditional_t<Planners::contains<Planner> && Observer::perfect, Planners, BehaviorSet<Planner, IdmClassic>>,
+    InterpolateExecution, SingleTrack, Observer>;
 
 constexpr AgentId ego{0};
 #define COMMA ,

@@ -225,9 +225,9 @@ TEST_CASE("evaluators see Frenet's courses as they see a world") {
   CHECK(least_gap < 46.0);
 }
 
-#define EVALUATORS                                                                                                     \
-  Collision, AtFaultCollision, AnyCollision, OffRoad, OncomingLane, AtGoal, PastJunctions, Progress, SpeedDeviation,   \
-      SpeedLimitExcess, LaneOffset, Acceleration, HardBraking, Gap, TimeToCollision, RequiredDeceleration,             \
+#define EVALUATORS                                                                                                   \
+  Collision, AtFaultCollision, AnyCollision, OffRoad, OncomingLane, AtGoal, PastJunctions, Progress, SpeedDeviation, \
+      SpeedLimitExcess, LaneOffset, Acceleration, HardBraking, Gap, TimeToCollision, RequiredDeceleration,           \
       LaneChangeUrgency, OthersBraking, Closeness
 
 TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a search plans by", Evaluator, EVALUATORS) {

@@ -121,7 +121,8 @@ TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, 
 TEST_CASE("so it is at shorter and longer steps, with a third of trucks where these fit") {
   for (char const* name : {"roundabout.xodr", "intersection_3way.xodr", "intersection_4way.xodr"})
     for (double const dt : {0.1, 0.5})
-      check_all_pass(support::own_map(name), name, support::runs(150), {.mix = {.truck_share = 0.35, .van_share = 0.15}}, dt);
+      check_all_pass(support::own_map(name), name, support::runs(150),
+                     {.mix = {.truck_share = 0.35, .van_share = 0.15}}, dt);
 }
 
 TEST_CASE("so it is with up to 30 vehicles, as many as fit before the junctions, at shorter and longer steps") {

@@ -162,11 +162,11 @@ std::string message_of(auto const& run) {
 }  // namespace
 
 #ifdef CAMBIUM_QUICK_TESTS  // each takes 3 s to compile: of each kind of actions one
-#define SEARCHES                                                                 \
-  Search<MacroActions, Exp3>, Search<MotionPrimitives, Ucb1, RandomRollout>,     \
+#define SEARCHES                                                             \
+  Search<MacroActions, Exp3>, Search<MotionPrimitives, Ucb1, RandomRollout>, \
       Search<SampledInputs, Puct, RandomRollout>, Search<DriverActions<Intersection>, Ucb1Tuned>
 #else
-#define SEARCHES                                                                                             \
+#define SEARCHES                                                                                              \
   Search<MacroActions, Puct>, Search<MotionPrimitives, Ucb1, RandomRollout>, Search<MacroActions, Ucb1Tuned>, \
       Search<MacroActions, Exp3>, Search<MacroActions, RegretMatching, RandomRollout>,                        \
       Search<DriverActions<Intersection>, Puct>, Search<SampledInputs, Ucb1Tuned, RandomRollout>,             \

@@ -342,8 +342,7 @@ using Predicted = World<BehaviorSet<MacroActions, DriverActions<Intersection>, I
 using Search = Mcts<Predicted, DriverActions<Intersection>, TrafficReward, Intersection>;
 using Learning = Mcts<Predicted, DriverActions<Intersection>, TrafficReward, HeadwayHypotheses<Intersection>>;
 
-#define PLANNERS \
-  Search, Learning, PolicyTreePlanner<Predicted>, ProposalPlanner<Predicted>, FrenetPlanner<Predicted>
+#define PLANNERS Search, Learning, PolicyTreePlanner<Predicted>, ProposalPlanner<Predicted>, FrenetPlanner<Predicted>
 using Road = World<BehaviorSet<PLANNERS, IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
 
 }  // namespace

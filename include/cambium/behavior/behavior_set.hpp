@@ -103,8 +103,7 @@ struct BehaviorSet {
           return detail::plan_flattened(model, view, own, dt);
         else
           return detail::plan_apart(model, view, own, dt);
-      }
-      else
+      } else
         return model.plan(view, own, dt);
     });
   }

@@ -5,19 +5,19 @@
 #include "cambium/core/plan.hpp"
 #include "cambium/world/world.hpp"
 
-/// A world type that many sources use, compiled once: `CAMBIUM_EXTERN_WORLD(MyWorld);` in the header that names the type,
-/// `CAMBIUM_INSTANTIATE_WORLD(MyWorld);` in one source, both at namespace scope and outside of any namespace. `MyWorld` is
-/// a `cambium::World`, or an alias of one. What steps, adds and observes is then not compiled where the header is
-/// included.
+/// A world type that many sources use, compiled once: `CAMBIUM_EXTERN_WORLD(MyWorld);` in the header that names the
+/// type, `CAMBIUM_INSTANTIATE_WORLD(MyWorld);` in one source, both at namespace scope and outside of any namespace.
+/// `MyWorld` is a `cambium::World`, or an alias of one. What steps, adds and observes is then not compiled where the
+/// header is included.
 #define CAMBIUM_EXTERN_WORLD(...) extern CAMBIUM_INSTANTIATE_WORLD(__VA_ARGS__)
-#define CAMBIUM_INSTANTIATE_WORLD(...)                                                               \
+#define CAMBIUM_INSTANTIATE_WORLD(...)                                                              \
   template class ::cambium::World<typename __VA_ARGS__::Behaviors, typename __VA_ARGS__::Execution, \
                                   typename __VA_ARGS__::Dynamics, typename __VA_ARGS__::Observer>
 
 /// The same for the planning of a behaviour with a workspace, such as a tree search, in a world: it is compiled apart
 /// from the world's other behaviours, in a source of its own.
 #define CAMBIUM_EXTERN_PLANNING(WorldType, ...) extern CAMBIUM_INSTANTIATE_PLANNING(WorldType, __VA_ARGS__)
-#define CAMBIUM_INSTANTIATE_PLANNING(WorldType, ...)                              \
-  template ::cambium::Plan<typename WorldType::View> cambium::detail::plan_apart( \
+#define CAMBIUM_INSTANTIATE_PLANNING(WorldType, ...)                                                  \
+  template ::cambium::Plan<typename WorldType::View> cambium::detail::plan_apart(                     \
       __VA_ARGS__ const&, typename WorldType::View const&, ::cambium::MemoryOf<__VA_ARGS__>&, double, \
       ::cambium::WorkspaceOf<__VA_ARGS__>&)
