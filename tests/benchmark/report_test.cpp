@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "../examples/program.hpp"
@@ -49,14 +50,14 @@ void write(ResultStore& store, ResultGroup const& group) {
   store.commit();
 }
 
-std::size_t number_of(std::string const& key) {
+std::size_t number_of(std::string_view key) {
   auto const& all = measures();
   auto const found = std::find_if(all.begin(), all.end(), [&](Measure const& m) { return m.key == key; });
   REQUIRE(found != all.end());
   return static_cast<std::size_t>(found - all.begin());
 }
 
-Change const& change_of(Comparison const& comparison, std::string const& key) {
+Change const& change_of(Comparison const& comparison, std::string_view key) {
   return comparison.changes.at(number_of(key));
 }
 
