@@ -133,7 +133,8 @@ void print_test(std::string const& file, std::string const& map_file, std::strin
                                     : "examples::load_map(" + cb::detail::json_string(map_file) + ")";
   std::printf(
       "\n// Needs the examples' sources, with these headers, and the snapshot.\n"
-      "#include <cambium/map/opendrive.hpp>\n#include \"benchmark/traffic.hpp\"\n#include "
+      "#include <cambium/map/opendrive.hpp>\n#include <cambium/snapshot.hpp>\n#include "
+      "\"benchmark/traffic.hpp\"\n#include "
       "\"common/desk.hpp\"\n#include \"common/map_file.hpp\"\n\n"
       "TEST_CASE(%s) {\n"
       "  examples::ParameterFile usual;\n"
