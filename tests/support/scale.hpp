@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <stdexcept>
+#include <string>
 
 namespace support {
 
@@ -11,7 +13,10 @@ namespace support {
 /// sets less, and tests/run --all sets 1), at least one. More than 1 looks longer for what is rare.
 inline std::uint32_t runs(double usual) {
   char const* const scale = std::getenv("CAMBIUM_SCALE");
-  double const factor = scale == nullptr ? 1.0 : std::strtod(scale, nullptr);
+  char* end = nullptr;
+  double const factor = scale == nullptr ? 1.0 : std::strtod(scale, &end);
+  if (scale != nullptr && (end == scale || *end != '\0' || !(factor > 0.0)))
+    throw std::runtime_error("CAMBIUM_SCALE is '" + std::string(scale) + "'; give a number above 0, such as 0.2");
   return static_cast<std::uint32_t>(std::clamp(std::round(usual * factor), 1.0, 1e9));
 }
 

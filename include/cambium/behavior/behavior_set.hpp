@@ -92,19 +92,19 @@ struct BehaviorSet {
   template <bool flattens = true, class View>
   [[nodiscard]] static Plan<View> plan(Any const& behavior, View const& view, Memory& memory, double dt,
                                        Workspaces& workspaces) {
+    constexpr bool plans_apart =
+        (std::size_t{std::is_same_v<WorkspaceOf<Behaviors>, NoWorkspace>} + ...) > detail::most_plans_in_step;
     return behavior.visit([&](auto const& model, auto place) -> Plan<View> {
       using Workspace = std::tuple_element_t<place, Workspaces>;
       auto& own = *std::get_if<place>(&memory);
       if constexpr (!std::is_same_v<Workspace, NoWorkspace>)
         return detail::plan_apart(model, view, own, dt, std::get<place>(workspaces));
-      else if constexpr ((std::size_t{std::is_same_v<WorkspaceOf<Behaviors>, NoWorkspace>} + ...) >
-                         detail::most_plans_in_step) {
-        if constexpr (flattens)
-          return detail::plan_flattened(model, view, own, dt);
-        else
-          return detail::plan_apart(model, view, own, dt);
-      } else
+      else if constexpr (!plans_apart)
         return model.plan(view, own, dt);
+      else if constexpr (flattens)
+        return detail::plan_flattened(model, view, own, dt);
+      else
+        return detail::plan_apart(model, view, own, dt);
     });
   }
 };

@@ -367,8 +367,9 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
       auto const ours = with_behaviors<World>(scenario, [&](auto const& spec) -> typename World::Behavior {
         auto const id = spec.id.given().value_or(none<AgentId>);
         if (std::ranges::find(own, id) != own.end()) {
-          auto const timed = [&]<class B>(B const& chosen) ->
-              typename World::Behavior { return ContenderBehavior<B>(chosen, &clock, id == scenario.ego); };
+          auto const timed = [&]<class B>(B const& chosen) {
+            return typename World::Behavior(ContenderBehavior<B>(chosen, &clock, id == scenario.ego));
+          };
           if constexpr (detail::Variant<Behavior>)
             return choose(spec, scenario).visit(timed);
           else

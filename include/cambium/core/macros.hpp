@@ -10,7 +10,7 @@
 
 /// Checks an invariant of the library, never user input, which raises errors. The default is `assert`, which NDEBUG
 /// turns off. To install your own handler, define `CAMBIUM_ASSERT` before the first cambium header, identically in all
-/// sources and, if you link cambium::compiled, PUBLIC for the CMake target cambium_compiled_core.
+/// sources and, if you link cambium::compiled, as a PUBLIC definition of the CMake target cambium_compiled_core.
 #ifndef CAMBIUM_ASSERT
 #include <cassert>
 #define CAMBIUM_ASSERT(condition, sentence) assert((condition) && (sentence))
