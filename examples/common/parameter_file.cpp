@@ -87,17 +87,17 @@ bool ParameterFile::has(std::string const& name) const {
 
 void ParameterFile::read(std::string const& name, void* object, void const* usual,
                          cambium::detail::TransferStruct transfer) const {
-  cambium::detail::JsonReader reader(*find(content_->said, name), name.c_str(), path_, nullptr);
-  transfer(object, usual, reader);
+  cambium::detail::read_json_value(*find(content_->said, name), name.c_str(), object, usual, transfer, path_, nullptr);
 }
 
 void ParameterFile::show_values(std::string const& name, void const* object, void const* usual,
                                 cambium::detail::TransferStruct transfer) {
-  cambium::detail::JsonWriter writer(cambium::JsonDetail::everything, nullptr);
-  transfer(const_cast<void*>(object), usual, writer);  // a writer hands back what it is given
+  auto const own =
+      cambium::detail::json_value(const_cast<void*>(object), usual, transfer,  // writes back what it is given
+                                  cambium::JsonDetail::everything, nullptr);
   for (auto& [shown, value] : content_->shown)
-    if (shown == name) return keep_common(value, writer.root());
-  content_->shown.push_back({name, writer.root()});
+    if (shown == name) return keep_common(value, own);
+  content_->shown.push_back({name, own});
 }
 
 bool ParameterFile::finish() {

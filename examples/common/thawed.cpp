@@ -4,11 +4,12 @@
 
 void examples::read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
                          std::string const& json) {
-  cb::detail::read_json_text(name, object, usual, transfer, json, "the ego", nullptr);
+  cb::detail::read_json_value(cb::detail::parse_json(json, "the ego"), name, object, usual, transfer, "the ego",
+                              nullptr);
 }
 
 std::string examples::difference(void* object, void const* usual, cb::detail::TransferStruct transfer) {
-  return cb::detail::json_text(object, usual, transfer, cb::JsonDetail::differences, nullptr);
+  return cb::detail::print_json(cb::detail::json_value(object, usual, transfer, cb::JsonDetail::differences, nullptr));
 }
 
 void examples::require_json(std::string const& text, std::string const& where) {

@@ -6,6 +6,7 @@
 #include <cambium/core/error.hpp>
 #include <cambium/core/write_file.hpp>
 #include <doctest/doctest.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include <cambium/benchmark/runner.hpp>
 #include <cambium/core/write_file.hpp>
 #include <doctest/doctest.h>
+#include <sqlite3.h>
 
 #include <unistd.h>
 

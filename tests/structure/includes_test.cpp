@@ -37,12 +37,12 @@ constexpr std::array heavy_headers = {"cambium/geometry/polygon_union", "cambium
 std::map<std::string, std::vector<std::string>> const optional_headers{
     {"pugixml.hpp",
      {"cambium/map/opendrive.hpp", "cambium/map/opendrive_impl.hpp", "cambium/map/opendrive/",
-      "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark",
+      "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps", "cambium/benchmark",
       "cambium/map/lanelet/lanelet2", "cambium/scenario/dataset/common_road",
       "cambium/scenario/dataset/detail/common_road"}},
     {"nlohmann/json.hpp",
-     {"cambium/core/json.hpp", "cambium/core/json_document.hpp", "cambium/core/detail/json_transfer.hpp",
-      "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark"}},
+     {"cambium/core/json", "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps",
+      "cambium/benchmark"}},
     {"sqlite3.h", {"cambium/benchmark"}}};
 
 /// Who makes maps brings what a map itself calls.

@@ -99,6 +99,7 @@ TEST_CASE("cambium.hpp gathers all rooms but the viewer, the benchmark and snaps
   auto const lines = lines_of(headers / "cambium.hpp");
   for (auto const& room : rooms()) {
     CAPTURE(room);
-    CHECK(lines.contains("#include \"cambium/" + room + ".hpp\"") == (room != "viewer" && room != "benchmark" && room != "snapshot"));
+    CHECK(lines.contains("#include \"cambium/" + room + ".hpp\"") ==
+          (room != "viewer" && room != "benchmark" && room != "snapshot"));
   }
 }

@@ -1,22 +1,18 @@
 #pragma once
 
-#include <sqlite3.h>
-
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 #include "cambium/benchmark/run_result.hpp"
 #include "cambium/core/error.hpp"
-#include "cambium/core/parameters.hpp"
 #include "cambium/core/version.hpp"
+
+struct sqlite3;
+struct sqlite3_stmt;
 
 /// Results of benchmarks in one SQLite file.
 ///
@@ -69,364 +65,93 @@ class ResultStore {
 
   /// A copy in memory of a database that is there already, and stays as it is: what is added to the copy is lost.
   /// Throws `StoreError` if the file is missing or is none. O(size of the file).
-  [[nodiscard]] static ResultStore existing(std::filesystem::path const& file) {
-    auto db = open(file.string(), SQLITE_OPEN_READONLY);
-    bool const may_be_read = is_ours(db.get());
-    int const code = sqlite3_errcode(db.get());
-    if (!may_be_read && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) &&
-        !std::filesystem::exists(file.string() + "-wal"))
-      db = open(immutable(file.string()), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);  // in a folder that may only be read
-    if (!is_ours(db.get()))
-      throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db.get())) + ")",
-                       "name one that a benchmark has written");
-    auto copy = open(":memory:", SQLITE_OPEN_READWRITE);
-    auto* const backup = sqlite3_backup_init(copy.get(), "main", db.get(), "main");
-    bool const is_whole = backup != nullptr && sqlite3_backup_step(backup, -1) == SQLITE_DONE;
-    if (backup != nullptr) sqlite3_backup_finish(backup);
-    if (!is_whole) throw StoreError(file.string(), "cannot be read", "it may be damaged or locked: try again");
-    return ResultStore(file, std::move(copy));
-  }
+  [[nodiscard]] static ResultStore existing(std::filesystem::path const& file);
   ResultStore(ResultStore&&) = default;
   ResultStore& operator=(ResultStore&&) = delete;
-  ~ResultStore() {
-    if (db_ && in_transaction_) sqlite3_exec(db_.get(), "COMMIT", nullptr, nullptr, nullptr);
-  }
+  ~ResultStore();
 
   [[nodiscard]] std::string const& file() const { return file_; }
 
   /// Notes a call of the runner; rows added from now on belong to it. `started`: a text, as "2026-11-24 17:00".
-  void begin_run(std::string const& started, std::string const& command) {
-    auto statement = prepare("INSERT INTO runs(started, command) VALUES(?, ?)");
-    bind(statement.get(), 1, started);
-    bind(statement.get(), 2, command);
-    step(statement.get());
-    run_ = sqlite3_last_insert_rowid(db_.get());
-  }
+  void begin_run(std::string const& started, std::string const& command);
   /// `source`: what names the set on the command line, "--set merging --seed 3"; empty: what was known stays.
-  void add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios, std::string const& source = {}) {
-    auto statement = prepare("INSERT OR REPLACE INTO sets(set_hash, title, scenarios, source) VALUES(?, ?, ?, ?)");
-    bind(statement.get(), 1, hash_text(hash));
-    bind(statement.get(), 2, title);
-    bind(statement.get(), 3, static_cast<std::int64_t>(scenarios));
-    bind(statement.get(), 4, source.empty() ? source_of(hash) : source);
-    step(statement.get());
-  }
+  void add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios, std::string const& source = {});
   /// `command`: what runs it, without the set, "examples/run benchmark --parameters FILE"; empty: what was known stays.
   void add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters,
-                    std::string const& command = {}) {
-    auto statement =
-        prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, command) VALUES(?, ?, ?, ?)");
-    bind(statement.get(), 1, name);
-    bind(statement.get(), 2, hash_text(hash));
-    bind(statement.get(), 3, parameters);
-    bind(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
-    step(statement.get());
-  }
+                    std::string const& command = {});
 
   /// Whether there is a result of that key. One for which the machine may be to blame does not count: of a run whose
   /// plans took too long, or whose process died. Throws `StoreError` if the file cannot be read.
-  [[nodiscard]] bool has(ResultKey const& key) {
-    bind_key(has_.get(), key);
-    bool const found = has_row(has_.get()) && !may_be_the_machine(text(has_.get(), 0));
-    sqlite3_reset(has_.get());
-    return found;
-  }
+  [[nodiscard]] bool has(ResultKey const& key);
 
   /// Adds a row, in place of an earlier one of that key. Throws `StoreError`, for example if the disk is full.
-  void add(ResultRow const& row) {
-    if (!in_transaction_) execute("BEGIN");
-    in_transaction_ = true;
-    int at = bind_key(add_result_.get(), row.key);
-    bind(add_result_.get(), at++, std::to_string(row.seed));
-    bind(add_result_.get(), at++, run_);
-    bind_fields(add_result_.get(), at, row.result);
-    step(add_result_.get());
-    at = bind_key(add_times_.get(), row.key);
-    bind_fields(add_times_.get(), at, row.times);
-    step(add_times_.get());
-  }
+  void add(ResultRow const& row);
 
   /// Puts all rows so far into the file.
-  void commit() {
-    if (in_transaction_) execute("COMMIT");
-    in_transaction_ = false;
-  }
+  void commit();
 
   /// Calls `f(ResultRow)` for each result, by set, behaviour, parameters, version and scenario.
-  void for_each(std::function<void(ResultRow const&)> const& f) {
-    auto statement =
-        prepare("SELECT " + key_columns + "seed, run, " + columns<RunResult>(false) + ", " + columns<RunTimes>(false) +
-                " FROM results LEFT JOIN times USING(set_hash, scenario, behavior, parameters_hash, version) ORDER BY "
-                "set_hash, behavior, parameters_hash, version, scenario");
-    while (has_row(statement.get())) {
-      ResultRow row;
-      row.key = {hash_of(text(statement.get(), 0)), sqlite3_column_int64(statement.get(), 1), text(statement.get(), 2),
-                 hash_of(text(statement.get(), 3)), text(statement.get(), 4)};
-      row.seed = std::strtoull(text(statement.get(), 5).c_str(), nullptr, 10);
-      row.run = sqlite3_column_int64(statement.get(), 6);
-      int at = 7;
-      read_fields(statement.get(), at, row.result);
-      read_fields(statement.get(), at, row.times);
-      f(row);
-    }
-  }
+  void for_each(std::function<void(ResultRow const&)> const& f);
 
   /// The parameters of a behaviour as text; empty if they are unknown.
-  [[nodiscard]] std::string parameters_of(std::string const& name, std::uint64_t hash) {
-    return of_behavior("parameters", name, hash);
-  }
+  [[nodiscard]] std::string parameters_of(std::string const& name, std::uint64_t hash);
   /// What runs it on the command line, without the set; empty if that is unknown.
-  [[nodiscard]] std::string command_of(std::string const& name, std::uint64_t hash) {
-    return of_behavior("command", name, hash);
-  }
+  [[nodiscard]] std::string command_of(std::string const& name, std::uint64_t hash);
   /// The title of a set; its hash if it has none.
-  [[nodiscard]] std::string title_of(std::uint64_t set_hash) {
-    auto const title = of_set("title", set_hash);
-    return title.empty() ? hash_text(set_hash) : title;
-  }
+  [[nodiscard]] std::string title_of(std::uint64_t set_hash);
   /// What names a set on the command line; empty if that is unknown.
-  [[nodiscard]] std::string source_of(std::uint64_t set_hash) { return of_set("source", set_hash); }
+  [[nodiscard]] std::string source_of(std::uint64_t set_hash);
 
   /// Adds all rows of another database, or none if that fails, as after runs with `--shard`. Rows of one key are taken
   /// from `other`, unless only that one has an error for which its machine may be to blame (see `has`). Throws
   /// `StoreError`.
-  void merge(ResultStore& other) {
-    commit();
-    execute("BEGIN IMMEDIATE");
-    auto const own_run = run_;
-    try {
-      auto const offset = last_run();
-      auto runs = other.prepare("SELECT run, started, command FROM runs");
-      auto add_run = prepare("INSERT INTO runs(run, started, command) VALUES(?, ?, ?)");
-      while (other.has_row(runs.get())) {
-        bind(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
-        for (int const at : {1, 2}) bind(add_run.get(), at + 1, text(runs.get(), at));
-        step(add_run.get());
-      }
-      auto sets = other.prepare("SELECT set_hash, title, scenarios, source FROM sets");
-      while (other.has_row(sets.get()))
-        add_set(hash_of(text(sets.get(), 0)), text(sets.get(), 1),
-                static_cast<std::size_t>(sqlite3_column_int64(sets.get(), 2)), text(sets.get(), 3));
-      auto behaviors = other.prepare("SELECT behavior, parameters_hash, parameters, command FROM behaviors");
-      while (other.has_row(behaviors.get()))
-        add_behavior(text(behaviors.get(), 0), hash_of(text(behaviors.get(), 1)), text(behaviors.get(), 2),
-                     text(behaviors.get(), 3));
-      in_transaction_ = true;  // `add` begins none
-      other.for_each([&](ResultRow const& row) {
-        if (may_be_the_machine(row.result.error) && has(row.key)) return;
-        run_ = row.run > 0 ? offset + row.run : 0;
-        add(row);
-      });
-      run_ = own_run;
-      commit();
-    } catch (...) {
-      run_ = own_run;
-      in_transaction_ = false;
-      sqlite3_exec(db_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
-      throw;
-    }
-  }
+  void merge(ResultStore& other);
 
  private:
   struct Close {
-    void operator()(sqlite3* db) const { sqlite3_close_v2(db); }
+    void operator()(sqlite3* db) const;
   };
   struct Finalize {
-    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+    void operator()(sqlite3_stmt* statement) const;
   };
   using Database = std::unique_ptr<sqlite3, Close>;
   using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
 
   /// `db`: the database, null for that in the file.
-  ResultStore(std::filesystem::path const& file, Database db) : file_(file.string()), db_(std::move(db)) {
-    if (!db_) db_ = open(file_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
-    if (sqlite3_errcode(db_.get()) != SQLITE_OK)
-      fail("cannot be opened", "name a file in a folder that exists and that you may write to");
-    if (sqlite3_db_readonly(db_.get(), "main") == 1) throw StoreError(file_, "may not be written", "name another file");
-    if (has_row(prepare("SELECT 1 FROM sqlite_master WHERE type = 'table'").get()) && !is_ours(db_.get()))
-      throw StoreError(file_, "holds tables of another program", "name another file");
-    execute("PRAGMA journal_mode=WAL");
-    execute("PRAGMA synchronous=NORMAL");
-    execute("BEGIN IMMEDIATE");
-    execute("CREATE TABLE IF NOT EXISTS runs(run INTEGER PRIMARY KEY, started TEXT, command TEXT)");
-    execute("CREATE TABLE IF NOT EXISTS sets(set_hash TEXT PRIMARY KEY, title TEXT, scenarios INTEGER, source TEXT)");
-    execute(
-        "CREATE TABLE IF NOT EXISTS behaviors(behavior TEXT, parameters_hash TEXT, parameters TEXT, command TEXT, "
-        "PRIMARY KEY(behavior, parameters_hash))");
-    std::string const key =
-        "set_hash TEXT NOT NULL, scenario INTEGER NOT NULL, behavior TEXT NOT NULL, parameters_hash TEXT NOT NULL, "
-        "version TEXT NOT NULL, ";
-    std::string const primary = ", PRIMARY KEY(set_hash, behavior, parameters_hash, version, scenario)) WITHOUT ROWID";
-    execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " + columns<RunResult>(true) +
-            primary);
-    execute("CREATE TABLE IF NOT EXISTS times(" + key + columns<RunTimes>(true) + primary);
-    add_missing_column("sets", "source TEXT");  // of a database that an older version of cambium has made
-    add_missing_column("behaviors", "command TEXT");
-    add_missing_column("results", "others_failed INTEGER");
-    add_missing_column("results", "off_route INTEGER");
-    add_missing_column("results", "required_deceleration REAL");
-    execute("COMMIT");
-    add_result_ = prepare("INSERT OR REPLACE INTO results(" + key_columns + "seed, run, " + columns<RunResult>(false) +
-                          ") VALUES(" + marks(7 + count<RunResult>()) + ")");
-    add_times_ = prepare("INSERT OR REPLACE INTO times(" + key_columns + columns<RunTimes>(false) + ") VALUES(" +
-                         marks(5 + count<RunTimes>()) + ")");
-    has_ = prepare(
-        "SELECT error FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND "
-        "version=?");
-  }
+  ResultStore(std::filesystem::path const& file, Database db);
 
-  [[nodiscard]] static Database open(std::string const& name, int flags) {
-    sqlite3* db = nullptr;
-    sqlite3_open_v2(name.c_str(), &db, flags, nullptr);
-    if (db != nullptr) sqlite3_busy_timeout(db, 60'000);
-    return Database(db);
-  }
+  [[nodiscard]] static Database open(std::string const& name, int flags);
   /// The name of a file that nobody changes: without that, one cannot read in a folder that one may not write to.
-  [[nodiscard]] static std::string immutable(std::string const& file) {
-    std::string uri = "file:";
-    for (char const c : file)
-      if (c == '?' || c == '#' || c == '%')
-        uri += c == '?' ? "%3f" : c == '#' ? "%23" : "%25";
-      else
-        uri += c;
-    return uri + "?immutable=1";
-  }
+  [[nodiscard]] static std::string immutable(std::string const& file);
   /// Whether the database has our tables.
-  [[nodiscard]] static bool is_ours(sqlite3* db) {
-    sqlite3_stmt* query = nullptr;
-    bool const is_ours = sqlite3_prepare_v2(db, "SELECT 1 FROM runs, sets, behaviors, results, times LIMIT 0", -1,
-                                            &query, nullptr) == SQLITE_OK;
-    sqlite3_finalize(query);
-    return is_ours;
-  }
+  [[nodiscard]] static bool is_ours(sqlite3* db);
 
-  inline static std::string const key_columns = "set_hash, scenario, behavior, parameters_hash, version, ";
-
-  [[noreturn]] void fail(std::string const& what, std::string const& remedy) const {
-    throw StoreError(file_, what + " (" + sqlite3_errmsg(db_.get()) + ")", remedy);
-  }
-  void execute(std::string const& sql) {
-    if (sqlite3_exec(db_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
-      fail("cannot be written", "make room on the disk, or name another file");
-  }
-  [[nodiscard]] Statement prepare(std::string const& sql) {
-    sqlite3_stmt* statement = nullptr;
-    if (sqlite3_prepare_v2(db_.get(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK)
-      fail("has other tables than this version of cambium", "name another file");
-    return Statement(statement);
-  }
+  [[noreturn]] void fail(std::string const& what, std::string const& remedy) const;
+  void execute(std::string const& sql);
+  [[nodiscard]] Statement prepare(std::string const& sql);
   /// Whether a query has a row, which can then be read.
-  [[nodiscard]] bool has_row(sqlite3_stmt* query) {
-    auto const code = sqlite3_step(query);
-    if (code != SQLITE_ROW && code != SQLITE_DONE) {
-      sqlite3_reset(query);
-      fail("cannot be read", "it may be damaged or locked: try again, or run the benchmark into another file");
-    }
-    return code == SQLITE_ROW;
-  }
-  [[nodiscard]] std::string of_set(std::string const& column, std::uint64_t set_hash) {
-    auto statement = prepare("SELECT " + column + " FROM sets WHERE set_hash=?");
-    bind(statement.get(), 1, hash_text(set_hash));
-    return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
-  }
-  [[nodiscard]] std::string of_behavior(std::string const& column, std::string const& name, std::uint64_t hash) {
-    auto statement = prepare("SELECT " + column + " FROM behaviors WHERE behavior=? AND parameters_hash=?");
-    bind(statement.get(), 1, name);
-    bind(statement.get(), 2, hash_text(hash));
-    return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
-  }
-  void add_missing_column(std::string const& table, std::string const& column) {
-    auto query = prepare("SELECT 1 FROM pragma_table_info(?) WHERE name=?");
-    bind(query.get(), 1, table);
-    bind(query.get(), 2, column.substr(0, column.find(' ')));
-    if (!has_row(query.get())) execute("ALTER TABLE " + table + " ADD COLUMN " + column);
-  }
-  [[nodiscard]] std::int64_t last_run() {
-    auto query = prepare("SELECT COALESCE(MAX(run), 0) FROM runs");
-    return has_row(query.get()) ? sqlite3_column_int64(query.get(), 0) : 0;
-  }
-  void step(sqlite3_stmt* statement) {
-    auto const code = sqlite3_step(statement);
-    if (code != SQLITE_DONE && code != SQLITE_ROW)
-      fail("cannot be written", "make room on the disk, or name another file");
-    sqlite3_reset(statement);
-  }
+  [[nodiscard]] bool has_row(sqlite3_stmt* query);
+  [[nodiscard]] std::string of_set(std::string const& column, std::uint64_t set_hash);
+  [[nodiscard]] std::string of_behavior(std::string const& column, std::string const& name, std::uint64_t hash);
+  void add_missing_column(std::string const& table, std::string const& column);
+  [[nodiscard]] std::int64_t last_run();
+  void step(sqlite3_stmt* statement);
 
-  static void bind(sqlite3_stmt* s, int at, std::string const& value) {
-    sqlite3_bind_text(s, at, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
-  }
-  static void bind(sqlite3_stmt* s, int at, std::int64_t value) { sqlite3_bind_int64(s, at, value); }
-  static int bind_key(sqlite3_stmt* s, ResultKey const& key) {
-    bind(s, 1, hash_text(key.set_hash));
-    bind(s, 2, key.scenario);
-    bind(s, 3, key.behavior);
-    bind(s, 4, hash_text(key.parameters_hash));
-    bind(s, 5, key.version);
-    return 6;
-  }
+  static void bind(sqlite3_stmt* s, int at, std::string const& value);
+  static void bind(sqlite3_stmt* s, int at, std::int64_t value);
+  static int bind_key(sqlite3_stmt* s, ResultKey const& key);
 
   template <class T>
-  [[nodiscard]] static int count() {
-    int fields = 0;
-    for_each_parameter<T>([&](auto const&) { ++fields; });
-    return fields;
-  }
-  [[nodiscard]] static std::string marks(int number) {
-    std::string text;
-    for (int i = 0; i < number; ++i) text += i == 0 ? "?" : ", ?";
-    return text;
-  }
+  [[nodiscard]] static int count();
+  [[nodiscard]] static std::string marks(int number);
   template <class T>
-  [[nodiscard]] static std::string columns(bool with_types) {
-    std::string text;
-    for_each_parameter<T>([&]<class P>(P const& entry) {
-      using Field = std::remove_cvref_t<decltype(std::declval<T&>().*entry.field)>;
-      text += (text.empty() ? "" : ", ") + std::string(entry.name);
-      if (!with_types) return;
-      text += std::is_same_v<Field, std::string> ? " TEXT" : std::is_floating_point_v<Field> ? " REAL" : " INTEGER";
-    });
-    return text;
-  }
+  [[nodiscard]] static std::string columns(bool with_types);
   template <class T>
-  static void bind_fields(sqlite3_stmt* s, int& at, T const& object) {
-    for_each_parameter<T>([&](auto const& entry) {
-      auto const& field = object.*entry.field;
-      using Field = std::remove_cvref_t<decltype(field)>;
-      if constexpr (std::is_same_v<Field, std::string>)
-        bind(s, at, field);
-      else if constexpr (std::is_floating_point_v<Field>)
-        sqlite3_bind_double(s, at, field);
-      else if constexpr (StrongId<Field>)
-        is_valid(field) ? sqlite3_bind_int64(s, at, static_cast<std::int64_t>(field)) : sqlite3_bind_null(s, at);
-      else
-        bind(s, at, static_cast<std::int64_t>(field));
-      ++at;
-    });
-  }
+  static void bind_fields(sqlite3_stmt* s, int& at, T const& object);
   template <class T>
-  static void read_fields(sqlite3_stmt* s, int& at, T& object) {
-    for_each_parameter<T>([&](auto const& entry) {
-      auto& field = object.*entry.field;
-      using Field = std::remove_cvref_t<decltype(field)>;
-      if constexpr (std::is_same_v<Field, std::string>)
-        field = text(s, at);
-      else if constexpr (std::is_floating_point_v<Field>)
-        field = sqlite3_column_double(s, at);
-      else if constexpr (StrongId<Field>)
-        field =
-            sqlite3_column_type(s, at) == SQLITE_NULL ? none<Field> : static_cast<Field>(sqlite3_column_int64(s, at));
-      else
-        field = static_cast<Field>(sqlite3_column_int64(s, at));
-      ++at;
-    });
-  }
-  [[nodiscard]] static std::string text(sqlite3_stmt* s, int at) {
-    auto const* const bytes = reinterpret_cast<char const*>(sqlite3_column_text(s, at));
-    return bytes != nullptr ? bytes : "";
-  }
-  [[nodiscard]] static std::uint64_t hash_of(std::string const& text) {
-    return std::strtoull(text.c_str(), nullptr, 16);
-  }
+  static void read_fields(sqlite3_stmt* s, int& at, T& object);
+  [[nodiscard]] static std::string text(sqlite3_stmt* s, int at);
+  [[nodiscard]] static std::uint64_t hash_of(std::string const& text);
 
   std::string file_;
   Database db_;
@@ -436,3 +161,7 @@ class ResultStore {
 };
 
 }  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/benchmark/result_store_impl.hpp"
+#endif

@@ -4,11 +4,12 @@
 #include <string>
 #include <string_view>
 
-#include "cambium/core/detail/json_transfer.hpp"
-#include "cambium/core/transfer_parameters.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/core/json_document.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/read_file.hpp"
+#include "cambium/core/transfer_parameters.hpp"
 
 /// Described structs as JSON: parameters, scenarios, scenario sets. Needs nlohmann_json (`cambium::json`).
 ///
@@ -19,6 +20,34 @@
 /// such that they read back as the same bits.
 namespace cambium {
 
+/// How much `to_json` writes.
+enum class JsonDetail : unsigned char {
+  differences,  ///< what differs from the defaults
+  everything
+};
+
+/// Names lanes in files; without it, files hold their numbers.
+class LaneNames {
+ public:
+  [[nodiscard]] virtual std::string name(LaneId lane) const = 0;
+  /// Throws `Error` at `where` if there is no such lane.
+  [[nodiscard]] virtual LaneId lane(std::string_view name, std::string const& where) const = 0;
+
+ protected:
+  ~LaneNames() = default;
+};
+
+namespace detail {
+
+/// A struct as a document; `transfer` writes back into `object` what it was given.
+[[nodiscard]] JsonValue json_value(void* object, void const* usual, TransferStruct transfer, JsonDetail detail,
+                                   LaneNames const* lanes);
+/// Reads `object`, whose name is `name` in messages.
+void read_json_value(JsonValue const& document, char const* name, void* object, void const* usual,
+                     TransferStruct transfer, std::string const& where, LaneNames const* lanes);
+
+}  // namespace detail
+
 /// The struct as JSON text. Lines are broken where an object or a list gets longer than 120 characters. Throws
 /// `ParameterError` if a `OneOf` holds a struct without a description, or a number is NaN.
 template <Described T>
@@ -26,7 +55,7 @@ template <Described T>
                                   LaneNames const* lanes = nullptr) {
   static T const usual{};
   auto copy = object;  // a transfer writes back what it was given
-  return detail::json_text(&copy, &usual, &detail::transfer_any<T>, detail, lanes);
+  return detail::print_json(detail::json_value(&copy, &usual, &detail::transfer_any<T>, detail, lanes));
 }
 
 /// Reads JSON text into `object`; what the text does not say, stays. Throws `ParameterError`, and leaves the object as
@@ -37,7 +66,8 @@ template <Described T>
 void read_json(T& object, std::string_view text, std::string const& where = "JSON", LaneNames const* lanes = nullptr) {
   T const usual{};
   T read = object;
-  detail::read_json_text(detail::struct_name<T>(), &read, &usual, &detail::transfer_any<T>, text, where, lanes);
+  detail::read_json_value(detail::parse_json(text, where), detail::struct_name<T>(), &read, &usual,
+                          &detail::transfer_any<T>, where, lanes);
   check_parameters(read, where);
   object = std::move(read);
 }
@@ -57,3 +87,7 @@ template <Described T>
 }
 
 }  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/core/json_impl.hpp"
+#endif

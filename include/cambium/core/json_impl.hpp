@@ -12,33 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/core/json_document.hpp"
-#include "cambium/core/nearest_names.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/json.hpp"
+#include "cambium/core/json_document.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/core/nearest_names.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/core/transfer_parameters.hpp"
-
-namespace cambium {
-
-/// How much `to_json` writes.
-enum class JsonDetail : unsigned char {
-  differences,  ///< what differs from the defaults
-  everything
-};
-
-/// Names lanes in files; without it, files hold their numbers.
-class LaneNames {
- public:
-  [[nodiscard]] virtual std::string name(LaneId lane) const = 0;
-  /// Throws `Error` at `where` if there is no such lane.
-  [[nodiscard]] virtual LaneId lane(std::string_view name, std::string const& where) const = 0;
-
- protected:
-  ~LaneNames() = default;
-};
-
-}  // namespace cambium
 
 namespace cambium::detail {
 
@@ -396,16 +377,15 @@ class JsonReader final : public ParameterTransfer {
   std::vector<char const*> known_;  ///< keys of the structs that are being read
 };
 
-inline std::string json_text(void* object, void const* usual, TransferStruct transfer, JsonDetail detail,
-                             LaneNames const* lanes) {
+CAMBIUM_COLD JsonValue json_value(void* object, void const* usual, TransferStruct transfer, JsonDetail detail,
+                                  LaneNames const* lanes) {
   JsonWriter writer(detail, lanes);
   transfer(object, usual, writer);
-  return print_json(writer.root());
+  return std::move(writer.root());
 }
 
-inline void read_json_text(char const* name, void* object, void const* usual, TransferStruct transfer,
-                           std::string_view text, std::string const& where, LaneNames const* lanes) {
-  auto const document = parse_json(text, where);
+CAMBIUM_COLD void read_json_value(JsonValue const& document, char const* name, void* object, void const* usual,
+                                  TransferStruct transfer, std::string const& where, LaneNames const* lanes) {
   JsonReader reader(document, name, where, lanes);
   transfer(object, usual, reader);
 }

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/json.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/core/text.hpp"
+#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "cambium/scenario/detail/scenario_maps.hpp"
+
+namespace cambium::detail {
+
+/// Replaces lanes; leaves all else as it is.
+class LaneExchange final : public ParameterTransfer {
+ public:
+  LaneExchange(Map const& map, LaneTable const& table, bool to_map, std::string const& where)
+      : map_(map), table_(table), to_map_(to_map), where_(where) {}
+
+  [[nodiscard]] bool field(char const*) override { return true; }
+  void element(std::size_t) override {}
+  void end() override {}
+  void begin_struct() override {}
+  void end_struct() override {}
+  [[nodiscard]] std::size_t list(std::size_t length, std::size_t, bool) override { return length; }
+  [[nodiscard]] std::size_t alternative(std::span<char const* const>, std::size_t now, std::size_t) override {
+    return now;
+  }
+  [[nodiscard]] bool presence(bool now) override { return now; }
+  [[nodiscard]] ParameterValue value(ParameterInfo const&, ParameterValue const& now, bool, ParameterValue const&,
+                                     ParameterValue const&) override {
+    auto const lane = now.as<LaneId>();
+    if (now.kind != ParameterValue::Kind::lane || !is_valid(lane)) return now;
+    return ParameterValue(to_map_ ? table_.lane_in(map_, lane, where_) : table_.number_of(map_, lane));
+  }
+  void text(std::string&, bool) override {}
+  [[nodiscard]] std::string where() const override { return where_; }
+
+ private:
+  Map const& map_;
+  LaneTable const& table_;
+  bool to_map_;
+  std::string const& where_;
+};
+
+CAMBIUM_COLD LaneId LaneTable::lane(std::string_view name, std::string const&) const {
+  auto const known = numbers_.find(name);
+  if (known != numbers_.end()) return known->second;
+  auto const number = static_cast<LaneId>(names_.size());
+  names_.emplace_back(name);
+  return numbers_.emplace(names_.back(), number).first->second;
+}
+
+CAMBIUM_COLD LaneId LaneTable::lane_in(Map const& map, LaneId number, std::string const& where) const {
+  if (index_of(number) >= names_.size())
+    throw ParameterError(where, "names a lane by a number that the file lacks", "it is damaged: take another copy");
+  auto const& name = names_[index_of(number)];
+  auto const refuse = [&](char const* what, char const* remedy) {
+    throw ParameterError(where + ": lane \"" + name + "\"", what, remedy);
+  };
+  auto parts = split(name, "/");
+  bool const backward = parts.size() == 4 && parts[3] == "backward",
+             forward = parts.size() == 4 && parts[3] == "forward";
+  // A road's name may contain slashes itself, so the numbers are taken from the end.
+  std::string_view rest(name);
+  std::string_view numbers[2];
+  if (backward || forward) rest.remove_suffix(parts[3].size() + 1);
+  for (int i = 1; i >= 0; --i) {
+    auto const slash = rest.rfind('/');
+    if (slash == rest.npos) refuse("is no lane", "write road/section/lane, as \"2/0/-1\"");
+    numbers[i] = rest.substr(slash + 1);
+    rest = rest.substr(0, slash);
+  }
+  auto const section = parse_number<std::uint32_t>(numbers[0]);
+  auto const lane_number = parse_number<int>(numbers[1]);
+  if (!section || !lane_number) refuse("is no lane", "write road/section/lane, as \"2/0/-1\"");
+  for (auto const& lane : map.lanes()) {
+    if (lane.section != *section || lane.number != *lane_number || map.road(lane.road).name != rest) continue;
+    if (is_valid(lane.opposite) && (forward || backward) && lane.along_road != forward) continue;
+    return lane.id;
+  }
+  refuse("is not in its map", "examples/run map FILE lists the lanes");
+  return none<LaneId>;
+}
+
+CAMBIUM_COLD LaneId LaneTable::number_of(Map const& map, LaneId id) const {
+  if (index_of(id) >= map.lanes().size())
+    throw ParameterError("lane " + to_string(id), "is not in its map", "take lanes from the scenario's map");
+  auto const& lane = map.lane(id);
+  std::string const direction = !is_valid(lane.opposite) ? "" : lane.along_road ? "/forward" : "/backward";
+  return this->lane(
+      map.road(lane.road).name + "/" + std::to_string(lane.section) + "/" + std::to_string(lane.number) + direction,
+      {});
+}
+
+CAMBIUM_COLD void exchange_lanes(void* object, void const* usual, TransferStruct transfer, Map const& map,
+                                 LaneTable const& table, bool to_map, std::string const& where) {
+  LaneExchange exchange(map, table, to_map, where);
+  transfer(object, usual, exchange);
+}
+
+CAMBIUM_COLD std::shared_ptr<Map const> MapFiles::load(std::filesystem::path const& folder, std::string const& name,
+                                                       std::string const& where) {
+  if (name.empty()) throw MapError(where, "it names no map", "give \"map_file\", an OpenDRIVE file");
+  auto const path = (folder / name).lexically_normal();
+  auto& map = maps_[path];
+  if (map) return map;
+  try {
+    map = load_opendrive(path.string()).map;
+  } catch (MapError const& problem) {
+    throw MapError(where, problem.what());
+  }
+  return map;
+}
+
+CAMBIUM_COLD void check_overlaps(std::vector<StartingBody> const& bodies, std::string const& where) {
+  for (std::size_t i = 0; i < bodies.size(); ++i)
+    for (std::size_t k = 0; k < i; ++k) {
+      auto const &a = bodies[i], &b = bodies[k];
+      double const reach = a.shape.length() + a.shape.width() + b.shape.length() + b.shape.width();
+      if (std::abs(a.pose.x - b.pose.x) > reach || std::abs(a.pose.y - b.pose.y) > reach) continue;
+      if (!geometry::intersects(geometry::box_of(a.shape, a.pose), geometry::box_of(b.shape, b.pose))) continue;
+      throw WorldError(where, "agents " + to_string(b.id) + " and " + to_string(a.id) + " overlap at the start",
+                       "move one of them");
+    }
+}
+
+}  // namespace cambium::detail
