@@ -21,6 +21,7 @@
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"
+#include "support/scale.hpp"
 
 using namespace cambium;
 
@@ -138,7 +139,7 @@ TEST_CASE("a narrowing at which each waits for the other is solved by searching 
     }
     return false;
   };
-  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+  for (std::uint64_t seed = 0; seed < support::runs(2); ++seed) {
     CHECK(solved(cooperative, seed));
     CHECK_FALSE(solved(through_the_narrowing(1), seed));  // it expects the other to drive on
   }

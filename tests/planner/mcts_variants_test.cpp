@@ -11,6 +11,7 @@
 #include "cambium/planner/search/puct.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
+#include "support/scale.hpp"
 
 using namespace cambium;
 
@@ -71,7 +72,7 @@ TEST_CASE("every variant of the search stops behind a standing vehicle") {
   Sim::Behavior const planners[] = {lower_bound, truncated, careful<Policy>(), timed, careful<Expected>(), sampled};
   for (auto const& planner : planners) {
     CAPTURE(planner.index());
-    for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    for (std::uint64_t seed = 0; seed < support::runs(2); ++seed) {
       Sim world(support::straight_road(1, 300.0), {.seed = seed});
       world.add({.position = {30, -1.75}, .speed = 12, .behavior = planner});
       world.add({.position = {90, -1.75}, .speed = 0, .behavior = IdmClassic{.desired_speed = 0.1}});

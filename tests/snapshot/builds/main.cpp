@@ -34,6 +34,10 @@
 #include "../../support/sealed.hpp"
 #include "../../support/spoil.hpp"
 
+// As in examples/common/desk.cpp, by the flags of this build.
+CAMBIUM_INSTANTIATE_WORLD(desk::World);
+CAMBIUM_INSTANTIATE_PLANNING(desk::World, desk::Planner);
+
 namespace cb = cambium;
 namespace fs = std::filesystem;
 
