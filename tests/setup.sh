@@ -180,13 +180,10 @@ configure() {
       if [[ $other != "$part" ]]; then options+=("-DCAMBIUM_BUILD_$other=OFF"); fi
     done
     if have ninja; then options+=(-G Ninja); fi
-    if have ccache; then
-      options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-    elif [[ $part == TESTS ]]; then
-      options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=$root/tests/timed")
-    fi
+    if have ccache; then options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
   fi
   if [[ $part == TESTS ]]; then
+    if ! have ccache; then options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=$root/tests/timed"); fi
     options+=(-DCAMBIUM_BUILD_EXAMPLES=ON "-DCAMBIUM_QUICK_TESTS=${quick:-OFF}" "-DCMAKE_CXX_LINKER_LAUNCHER=$root/tests/timed")
   fi
   rm -f "$build/.configured_$part"

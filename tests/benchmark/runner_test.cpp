@@ -244,6 +244,25 @@ TEST_CASE("a run that throws or fails is a result") {
   }));
 }
 
+TEST_CASE("who chooses from several behaviours drives as by the one that is chosen") {
+  auto const set = support::merging_set<Traffic>(3);
+  auto const same = [](RunResult const& a, RunResult const& b) { return hash_parameters(a) == hash_parameters(b); };
+  auto const choosing = [](bool changes_lanes) {
+    return contender_by<Traffic>("either", "", 1,
+                                 [changes_lanes](auto const&, auto const&) -> OneOf<IdmClassic, Mobil> {
+                                   if (changes_lanes) return Mobil{};
+                                   return IdmClassic{.desired_speed = 22.0};
+                                 });
+  };
+  for (auto const& scenario : set.scenarios) {
+    auto const follower = contender<Traffic>(IdmClassic{.desired_speed = 22.0}).run(scenario, {}, false).result;
+    auto const changer = contender<Traffic>(Mobil{}).run(scenario, {}, false).result;
+    CHECK(same(choosing(false).run(scenario, {}, false).result, follower));
+    CHECK(same(choosing(true).run(scenario, {}, false).result, changer));
+    CHECK_FALSE(same(follower, changer));
+  }
+}
+
 TEST_CASE("a result is what an own loop finds") {
   auto const set = support::merging_set<Traffic>(6);
   auto const idm = contender<Traffic>(IdmClassic{.desired_speed = 22.0});

@@ -164,7 +164,7 @@ std::string message_of(auto const& run) {
 #ifdef CAMBIUM_QUICK_TESTS  // each takes 3 s to compile: of each kind of actions one
 #define SEARCHES                                                             \
   Search<MacroActions, Exp3>, Search<MotionPrimitives, Ucb1, RandomRollout>, \
-      Search<SampledInputs, Puct, RandomRollout>, Search<DriverActions<Intersection>, Ucb1Tuned>
+      Search<SampledInputs, Puct, RandomRollout>, Search<DriverActions<Intersection>, Puct>
 #else
 #define SEARCHES                                                                                              \
   Search<MacroActions, Puct>, Search<MotionPrimitives, Ucb1, RandomRollout>, Search<MacroActions, Ucb1Tuned>, \

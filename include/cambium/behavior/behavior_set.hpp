@@ -88,7 +88,7 @@ struct BehaviorSet {
   }
 
   /// Plans by the agent's behaviour with its memory. One well-predicted branch per alternative, no virtual call.
-  /// `flattens`: whether what plans apart is inlined into one function each.
+  /// `flattens`: whether each behaviour that plans in a function of its own is flattened there.
   template <bool flattens = true, class View>
   [[nodiscard]] static Plan<View> plan(Any const& behavior, View const& view, Memory& memory, double dt,
                                        Workspaces& workspaces) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/benchmark/run_result.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 

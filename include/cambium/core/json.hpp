@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"

@@ -10,8 +10,10 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/json.hpp"
 #include "cambium/core/json_document.hpp"

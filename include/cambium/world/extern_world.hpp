@@ -6,8 +6,8 @@
 #include "cambium/world/world.hpp"
 
 /// A world type that many sources use, compiled once: `CAMBIUM_EXTERN_WORLD(MyWorld);` in the header that names the
-/// type, `CAMBIUM_INSTANTIATE_WORLD(MyWorld);` in one source, both at namespace scope and outside of any namespace.
-/// `MyWorld` is a `cambium::World`, or an alias of one. What steps, adds and observes is then not compiled where the
+/// type, `CAMBIUM_INSTANTIATE_WORLD(MyWorld);` in one source, both outside of any namespace. `MyWorld` is a
+/// `cambium::World`, or an alias of one. What steps, adds and observes is then not compiled where the
 /// header is included.
 #define CAMBIUM_EXTERN_WORLD(...) extern CAMBIUM_INSTANTIATE_WORLD(__VA_ARGS__)
 #define CAMBIUM_INSTANTIATE_WORLD(...)                                                              \
@@ -15,7 +15,7 @@
                                   typename __VA_ARGS__::Dynamics, typename __VA_ARGS__::Observer>
 
 /// The same for the planning of a behaviour with a workspace, such as a tree search, in a world: it is compiled apart
-/// from the world's other behaviours, in a source of its own.
+/// from the world's other behaviours, in a source of its own. `WorldType` is an alias: a name without commas.
 #define CAMBIUM_EXTERN_PLANNING(WorldType, ...) extern CAMBIUM_INSTANTIATE_PLANNING(WorldType, __VA_ARGS__)
 #define CAMBIUM_INSTANTIATE_PLANNING(WorldType, ...)                                                  \
   template ::cambium::Plan<typename WorldType::View> cambium::detail::plan_apart(                     \

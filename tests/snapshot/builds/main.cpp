@@ -34,7 +34,7 @@
 #include "../../support/sealed.hpp"
 #include "../../support/spoil.hpp"
 
-// As in examples/common/desk.cpp, by the flags of this build.
+// As in examples/common/desk.cpp, with the flags of this build.
 CAMBIUM_INSTANTIATE_WORLD(desk::World);
 CAMBIUM_INSTANTIATE_PLANNING(desk::World, desk::Planner);
 

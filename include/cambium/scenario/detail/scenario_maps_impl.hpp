@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
 #include "cambium/core/json.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/text.hpp"
