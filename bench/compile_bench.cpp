@@ -152,6 +152,7 @@ std::vector<Unit> units(fs::path const& root) {
   std::string const compiled = "-DCAMBIUM_COMPILED";
   all.push_back({"planner/compiled", planner, compiled, Budget{6.0, 10.0, 600.0}});
   all.push_back({"first/compiled", first, compiled, Budget{6.0, 8.0, 600.0}});
+  all.push_back({"benchmark/compiled", program_of(root / "include/cambium/benchmark/README.md", 1), compiled});
   all.push_back({"first/header_only", first, {}, Budget{16.0, 25.0, 1200.0}});
   // A world declared extern, by who uses it, and by who instantiates it.
   auto const parts = program_of(root / "include/cambium/world/README.md", 2);

@@ -116,10 +116,9 @@ Types types_of(cb::SnapshotInfo const& info, std::string const& file) {
   if (info.component == desk::component) return {&desk::thaw, "desk::thaw"};
   examples::ParameterFile usual;
   std::vector<std::string> known{desk::component};
-  for (auto const& driver : benchmark::shipped(usual)) {
-    auto const& name = driver.contender.name;
-    if (name == info.component) return {driver.thaw, "benchmark::" + name + "(usual).thaw"};
-    known.push_back(name);
+  for (auto const& contender : benchmark::shipped(usual)) {
+    if (contender.name == info.component) return {&benchmark::thaw, "benchmark::thaw"};
+    known.push_back(contender.name);
   }
   throw cb::SnapshotError(
       file,
@@ -137,7 +136,6 @@ void print_test(std::string const& file, std::string const& map_file, std::strin
       "\"benchmark/traffic.hpp\"\n#include "
       "\"common/desk.hpp\"\n#include \"common/map_file.hpp\"\n\n"
       "TEST_CASE(%s) {\n"
-      "  examples::ParameterFile usual;\n"
       "  std::string const file = %s, bytes = cambium::read_snapshot_file(file);\n"
       "  auto const thawed = %s(\n      %s, bytes, file);\n"
       "  static_cast<void>(thawed->run());\n"

@@ -7,12 +7,11 @@ CAMBIUM_INSTANTIATE_WORLD(benchmark::TestedWorld);
 
 namespace benchmark {
 
-Driver driver(std::string name, std::string parameters, std::uint64_t hash, std::function<Tested(Spec const&)> choose) {
-  return {
-      cb::contender_by<Traffic>(
-          std::move(name), std::move(parameters), hash,
-          [choose = std::move(choose)](Spec const& ego, cb::Scenario<Traffic> const&) { return choose(ego); }, &freeze),
-      &thaw};
+Contender driver(std::string name, std::string parameters, std::uint64_t hash,
+                 std::function<Tested(Spec const&)> choose) {
+  return cb::contender_by<Traffic>(
+      std::move(name), std::move(parameters), hash,
+      [choose = std::move(choose)](Spec const& ego, cb::Scenario<Traffic> const&) { return choose(ego); }, &freeze);
 }
 
 double desired_speed(Spec const& ego) {
@@ -28,13 +27,13 @@ double desired_speed(Spec const& ego) {
       ego.behavior.given());
 }
 
-Driver idm(examples::ParameterFile& file) {
+Contender idm(examples::ParameterFile& file) {
   return with_speed(file, cb::IdmClassic{}, "idm", [](auto& driver, double speed) { driver.desired_speed = speed; });
 }
-Driver mobil(examples::ParameterFile& file) {
+Contender mobil(examples::ParameterFile& file) {
   return with_speed(file, cb::Mobil{}, "mobil", [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
 }
-Driver intersection(examples::ParameterFile& file) {
+Contender intersection(examples::ParameterFile& file) {
   return with_speed(file, cb::Intersection{}, "intersection",
                     [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
 }

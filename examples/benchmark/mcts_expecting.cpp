@@ -2,11 +2,11 @@
 
 CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Expecting>);
 
-benchmark::Driver benchmark::mcts_single_agent(examples::ParameterFile& file) {
+benchmark::Contender benchmark::mcts_single_agent(examples::ParameterFile& file) {
   return with_speed(file, search<cb::Intersection>(), "mcts_single_agent");
 }
 
-benchmark::Driver benchmark::mcts_cooperative(examples::ParameterFile& file) {
+benchmark::Contender benchmark::mcts_cooperative(examples::ParameterFile& file) {
   auto planner = search<cb::Intersection>();
   planner.most_agents = 4;
   return with_speed(file, planner, "mcts_cooperative");

@@ -2,6 +2,6 @@
 
 CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Learning>);
 
-benchmark::Driver benchmark::mcts_hypothesis(examples::ParameterFile& file) {
+benchmark::Contender benchmark::mcts_hypothesis(examples::ParameterFile& file) {
   return with_speed(file, search<cb::HeadwayHypotheses<cb::Intersection>>(), "mcts_hypothesis");
 }

@@ -2,7 +2,7 @@
 
 CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::PolicyTree>);
 
-benchmark::Driver benchmark::policy_tree(examples::ParameterFile& file) {
+benchmark::Contender benchmark::policy_tree(examples::ParameterFile& file) {
   return with_speed(file, PolicyTree{}, "policy_tree", [](PolicyTree& planner, double speed) {
     planner.actions.driver.idm.desired_speed = planner.actions.macro.idm.desired_speed = speed;
   });

@@ -23,8 +23,7 @@ int run_program(int argc, char** argv, Run const& run, bool prints = true) {
   program.allow_extras();  // for `run`
   program.set_help_flag();
   return examples::run_program(program, argc, argv, [&] {
-    std::vector<cb::Contender<Traffic>> contenders;
-    for (auto& driver : shipped(file)) contenders.push_back(std::move(driver.contender));
+    auto const contenders = shipped(file);
     if (file.prints() && !prints) return 0;
     if (file.finish()) return 0;
     auto const rest = program.remaining();

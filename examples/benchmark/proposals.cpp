@@ -2,7 +2,7 @@
 
 CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Proposals>);
 
-benchmark::Driver benchmark::proposals(examples::ParameterFile& file) {
+benchmark::Contender benchmark::proposals(examples::ParameterFile& file) {
   return with_speed(file, Proposals{}, "proposals",
                     [](Proposals& planner, double speed) { planner.driver.driver.desired_speed = speed; });
 }

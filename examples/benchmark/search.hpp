@@ -13,7 +13,8 @@ template <class Others>
 }
 
 template <class Others>
-[[nodiscard]] Driver with_speed(examples::ParameterFile& file, Search<Others> const& planner, std::string const& name) {
+[[nodiscard]] Contender with_speed(examples::ParameterFile& file, Search<Others> const& planner,
+                                   std::string const& name) {
   return with_speed(file, planner, name, [](Search<Others>& own, double speed) {
     own.reward.desired_speed = speed;
     own.actions.driver.idm.desired_speed = own.actions.macro.idm.desired_speed = speed;

@@ -64,11 +64,7 @@ using Tested =
     cb::OneOf<cb::IdmClassic, cb::Mobil, cb::Intersection, Expecting, Learning, PolicyTree, Proposals, Frenet>;
 using TestedWorld = cb::ContenderWorld<Traffic, Tested>;
 
-/// A behaviour under test, and how to thaw the snapshot of a run that it failed.
-struct Driver {
-  cb::Contender<Traffic> contender;
-  examples::Thaw thaw;
-};
+using Contender = cb::Contender<Traffic>;
 
 /// The snapshot of a failed run, and what thaws it.
 [[nodiscard]] std::string freeze(cb::FailedRun<TestedWorld> const& run);
@@ -79,14 +75,14 @@ struct Driver {
 [[nodiscard]] double desired_speed(Spec const& ego);
 
 /// A driver by its name, its parameters as text and hash, and what drives the ego.
-[[nodiscard]] Driver driver(std::string name, std::string parameters, std::uint64_t hash,
-                            std::function<Tested(Spec const&)> choose);
+[[nodiscard]] Contender driver(std::string name, std::string parameters, std::uint64_t hash,
+                               std::function<Tested(Spec const&)> choose);
 
 /// A driver whose parameters are `planner` with what the file says of `name`, but for the ego's desired speed:
 /// `set_speed(planner, speed)`.
 template <class Planner, class SetSpeed>
-[[nodiscard]] Driver with_speed(examples::ParameterFile& file, Planner planner, std::string const& name,
-                                SetSpeed set_speed) {
+[[nodiscard]] Contender with_speed(examples::ParameterFile& file, Planner planner, std::string const& name,
+                                   SetSpeed set_speed) {
   file.take(planner, name);
   return driver(name, cb::to_string(planner), cb::hash_parameters(planner), [planner, set_speed](Spec const& ego) {
     auto own = planner;
@@ -96,18 +92,18 @@ template <class Planner, class SetSpeed>
 }
 
 // The shipped behaviours; each planner in a source file of its own, because planners take long to compile.
-[[nodiscard]] Driver idm(examples::ParameterFile& file);
-[[nodiscard]] Driver mobil(examples::ParameterFile& file);
-[[nodiscard]] Driver intersection(examples::ParameterFile& file);
-[[nodiscard]] Driver proposals(examples::ParameterFile& file);
-[[nodiscard]] Driver policy_tree(examples::ParameterFile& file);
-[[nodiscard]] Driver frenet(examples::ParameterFile& file);
-[[nodiscard]] Driver mcts_single_agent(examples::ParameterFile& file);
-[[nodiscard]] Driver mcts_cooperative(examples::ParameterFile& file);
-[[nodiscard]] Driver mcts_hypothesis(examples::ParameterFile& file);
+[[nodiscard]] Contender idm(examples::ParameterFile& file);
+[[nodiscard]] Contender mobil(examples::ParameterFile& file);
+[[nodiscard]] Contender intersection(examples::ParameterFile& file);
+[[nodiscard]] Contender proposals(examples::ParameterFile& file);
+[[nodiscard]] Contender policy_tree(examples::ParameterFile& file);
+[[nodiscard]] Contender frenet(examples::ParameterFile& file);
+[[nodiscard]] Contender mcts_single_agent(examples::ParameterFile& file);
+[[nodiscard]] Contender mcts_cooperative(examples::ParameterFile& file);
+[[nodiscard]] Contender mcts_hypothesis(examples::ParameterFile& file);
 
 /// All of them.
-[[nodiscard]] inline std::vector<Driver> shipped(examples::ParameterFile& file) {
+[[nodiscard]] inline std::vector<Contender> shipped(examples::ParameterFile& file) {
   return {idm(file),
           mobil(file),
           intersection(file),

@@ -125,7 +125,7 @@ TEST_CASE("failures of the benchmark leave snapshots that open at the desk") {
     bool const is_idm = has(again.out, "component idm");
     CHECK(has(again.out, is_idm ? "because   cut_out, scenario " : "1 cycle before error: its plans took longer"));
     CHECK(has(again.out, "bit-equal to what was recorded"));
-    CHECK(has(again.out, "(usual).thaw("));
+    CHECK(has(again.out, "benchmark::thaw("));
   }
   auto const edited = debug.run({found.front(), "--edit", "behavior.desired_speed=3"});
   CHECK(edited.code == 1);

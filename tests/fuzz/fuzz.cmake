@@ -41,8 +41,7 @@ if(CAMBIUM_FUZZING_CLANG AND CAMBIUM_FUZZ_PUGIXML)
   add_custom_target(opendrive_fuzz DEPENDS ${fuzzer})
   add_build_test(fuzz.build opendrive_fuzz)
   set_tests_properties(fuzz.build PROPERTIES FIXTURES_SETUP opendrive_fuzz)
-  add_test(NAME fuzz.opendrive
-    COMMAND ${timed} test:fuzz.opendrive ${fuzzer} -max_len=6000 -seed=1 -runs=4000 -max_total_time=30 -timeout=20 -rss_limit_mb=4096
+  add_timed_test(fuzz.opendrive ${fuzzer} -max_len=6000 -seed=1 -runs=4000 -max_total_time=30 -timeout=20 -rss_limit_mb=4096
       -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/fuzz/ ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found ${fuzz_source}/seeds)
   set_tests_properties(fuzz.opendrive PROPERTIES FIXTURES_REQUIRED opendrive_fuzz)
 else()

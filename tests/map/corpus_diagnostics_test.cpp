@@ -57,7 +57,10 @@ Expected const expected[]{
 TEST_CASE("these maps of the corpus have the findings that are known, and no other") {
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
-  CHECK(corpus::maps(*folder).size() >= std::size(expected));
+  for (auto const& path : corpus::maps(*folder)) {
+    auto const known = [&](Expected const& e) { return path.stem() == e.map; };
+    if (std::none_of(std::begin(expected), std::end(expected), known)) MESSAGE("no findings are known of " << path);
+  }
   std::size_t roads = 0;
   for (auto const& e : expected) {
     CAPTURE(e.map);

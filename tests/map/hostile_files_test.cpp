@@ -1,5 +1,5 @@
 // Files damaged at random, read in full: a map that can be driven on, or an error; nothing else. 200 of each file are a
-// sample that takes seconds: CAMBIUM_SCALE=50 takes that many times as many.
+// sample that takes seconds: CAMBIUM_SCALE=50 build/tests/test_map -tc='a damaged file*' takes that many times as many.
 #include <doctest/doctest.h>
 
 #include <cstdint>
@@ -108,7 +108,7 @@ TEST_CASE("a damaged file gives a map on which traffic runs, or a MapError, and 
     auto const count = damage(files[i], i, support::runs(200));
     MESSAGE(files[i].filename().string() << ": " << count.maps << " maps, " << count.errors << " errors");
     CHECK(count.maps > 0.4 * support::runs(200));
-    if (support::runs(200) >= 200) CHECK(count.errors > 0);
+    if (support::runs(200) >= 200) CHECK(count.errors > 2);
     errors += count.errors;
   }
   CHECK(errors > 0.01 * support::runs(200) * static_cast<double>(files.size()));

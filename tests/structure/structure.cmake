@@ -26,8 +26,7 @@ endif()
 
 # add_build_test(NAME TARGET): a ctest that builds a target of this build tree.
 function(add_build_test name target)
-  add_test(NAME ${name}
-    COMMAND ${timed} test:${name} ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target ${target} --parallel 2 ${keep_going})
+  add_timed_test(${name} ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target ${target} --parallel 2 ${keep_going})
   # Compiling hundreds of headers may take a slow machine longer than the 10 minutes that a test has elsewhere.
   set_tests_properties(${name} PROPERTIES RESOURCE_LOCK cambium_build_tree TIMEOUT 2400)
 endfunction()
@@ -210,7 +209,7 @@ foreach(compiler IN LISTS wrong_compilers)
   add_custom_command(OUTPUT ${precompiled}
     COMMAND ${compiler} @${compile_flags} ${wrong_options} -x c++-header ${wrong_header} -MMD -MT ${precompiled}
       -MF ${precompiled}.d -o ${precompiled}
-    DEPENDS ${wrong_header} ${compile_flags} DEPFILE ${precompiled}.d COMMENT "header of the wrong programs" VERBATIM)
+    DEPENDS ${wrong_header} ${compile_flags} ${compiler} DEPFILE ${precompiled}.d COMMENT "header of the wrong programs" VERBATIM)
   list(APPEND wrong_headers ${precompiled})
   list(JOIN command "|" command)
   list(APPEND wrong_commands ${command})
@@ -219,7 +218,7 @@ add_custom_target(structure_wrong_headers DEPENDS ${wrong_headers})
 add_build_test(structure.wrong_headers structure_wrong_headers)
 set_tests_properties(structure.wrong_headers PROPERTIES FIXTURES_SETUP structure_wrong_headers)
 function(add_wrong_program name source)
-  add_test(NAME structure.wrong.${name} COMMAND ${timed} test:structure.wrong.${name} bash ${structure_source}/wrong.sh ${source} ${wrong_commands})
+  add_timed_test(structure.wrong.${name} bash ${structure_source}/wrong.sh ${source} ${wrong_commands})
   set_tests_properties(structure.wrong.${name} PROPERTIES FIXTURES_REQUIRED structure_wrong_headers)
 endfunction()
 file(GLOB programs CONFIGURE_DEPENDS ${structure_source}/wrong/*.cpp)
@@ -236,8 +235,7 @@ set_tests_properties(structure.wrong.harness_no_sentence PROPERTIES PASS_REGULAR
 
 # A project that uses cambium, by add_subdirectory and by find_package.
 function(add_consumer name)
-  add_test(NAME structure.consumer.${name}
-    COMMAND ${timed} test:structure.consumer.${name} ${CMAKE_CTEST_COMMAND} --build-and-test ${structure_source}/consumer ${structure_binary}/consumer_${name}
+  add_timed_test(structure.consumer.${name} ${CMAKE_CTEST_COMMAND} --build-and-test ${structure_source}/consumer ${structure_binary}/consumer_${name}
       --build-generator ${CMAKE_GENERATOR} --build-noclean
       --build-options -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
         -DCONSUMER_VERSION=${PROJECT_VERSION} ${ARGN}
@@ -279,10 +277,10 @@ if(CAMBIUM_INSTALL)
     set(compiled "")
   endif()
   add_consumer(package ${package} "-DCONSUMER_COMPONENTS=opendrive${compiled}" "-DCONSUMER_TARGETS=geometry${compiled}")
-  add_consumer(package_without_pugixml ${package} ${no_pugixml} -DCONSUMER_TARGETS=cambium)
+  add_consumer(package_without_pugixml ${package} ${no_pugixml} "-DCONSUMER_TARGETS=cambium${compiled}")
   add_consumer(package_lacks_opendrive ${package} ${no_pugixml} -DCONSUMER_COMPONENTS=opendrive)
   add_consumer(package_links_opendrive_without_pugixml ${package} ${no_pugixml} -DCONSUMER_TARGETS=opendrive)
-  add_test(NAME structure.installed_files COMMAND ${timed} test:structure.installed_files bash ${structure_source}/installed.sh ${PROJECT_SOURCE_DIR} ${install_tree}
+  add_timed_test(structure.installed_files bash ${structure_source}/installed.sh ${PROJECT_SOURCE_DIR} ${install_tree}
     ${CMAKE_CXX_COMPILER} ${check_clang})
   set_tests_properties(structure.installed_files PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
   set_tests_properties(structure.consumer.package structure.consumer.package_without_pugixml

@@ -7,6 +7,10 @@
 #include <variant>
 #include <vector>
 
+#ifdef CAMBIUM_COMPILED_WITHOUT_JSON
+#error "cambium::compiled was made without JSON: make nlohmann_json available before cambium (nlohmann-json3-dev)"
+#endif
+
 /// JSON texts as trees; `core/json.hpp` reads and writes described structs. Needs nlohmann_json.
 namespace cambium::detail {
 

@@ -7,8 +7,8 @@
 
 /// A world type that many sources use, compiled once: `CAMBIUM_EXTERN_WORLD(MyWorld);` in the header that names the
 /// type, `CAMBIUM_INSTANTIATE_WORLD(MyWorld);` in one source, both outside of any namespace. `MyWorld` is a
-/// `cambium::World`, or an alias of one. What steps, adds and observes is then not compiled where the
-/// header is included.
+/// `cambium::World`, or an alias of one. Sources that include the header then do not compile stepping, adding or
+/// observing.
 #define CAMBIUM_EXTERN_WORLD(...) extern CAMBIUM_INSTANTIATE_WORLD(__VA_ARGS__)
 #define CAMBIUM_INSTANTIATE_WORLD(...)                                                              \
   template class ::cambium::World<typename __VA_ARGS__::Behaviors, typename __VA_ARGS__::Execution, \

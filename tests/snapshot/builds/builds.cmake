@@ -24,14 +24,14 @@ endfunction()
 # add_thaw_test(NAME COMPILER OPTION...): such a build, and whether the release's states come out bit-equal in it.
 function(add_thaw_test name)
   add_snapshot_build(${name} ${ARGN})
-  add_test(NAME snapshot.builds.${name} COMMAND ${timed} test:snapshot.builds.${name} ${builds_binary}/${name} thaw ${builds_binary}/recorded)
+  add_timed_test(snapshot.builds.${name} ${builds_binary}/${name} thaw ${builds_binary}/recorded)
   set_tests_properties(snapshot.builds.${name} PROPERTIES
     FIXTURES_REQUIRED "snapshot_recorded;snapshot_build_${name}")
 endfunction()
 
 if(TARGET cambium::snapshot AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT WIN32)
   add_snapshot_build(release ${CMAKE_CXX_COMPILER} -O2 -DNDEBUG)
-  add_test(NAME snapshot.builds.record COMMAND ${timed} test:snapshot.builds.record ${builds_binary}/release record ${builds_binary}/recorded)
+  add_timed_test(snapshot.builds.record ${builds_binary}/release record ${builds_binary}/recorded)
   set_tests_properties(snapshot.builds.record PROPERTIES
     FIXTURES_REQUIRED snapshot_build_release FIXTURES_SETUP snapshot_recorded)
 
@@ -58,7 +58,7 @@ if(TARGET cambium::snapshot AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NO
       -fsanitize=address,undefined,float-cast-overflow -fno-sanitize-recover=all)
     # 100 000 damaged files, of which every fourth has a right checksum again, so that the archive is read; and 7 500
     # worlds with changed numbers.
-    add_test(NAME snapshot.builds.mutants COMMAND ${timed} test:snapshot.builds.mutants ${builds_binary}/sanitizers mutate ${builds_binary}/recorded 100000)
+    add_timed_test(snapshot.builds.mutants ${builds_binary}/sanitizers mutate ${builds_binary}/recorded 100000)
     set_tests_properties(snapshot.builds.mutants PROPERTIES
       FIXTURES_REQUIRED "snapshot_recorded;snapshot_build_sanitizers")
   else()
