@@ -85,16 +85,13 @@ bool ParameterFile::has(std::string const& name) const {
   return find(content_->said, name) != nullptr;
 }
 
-void ParameterFile::read(std::string const& name, void* object, void const* usual,
-                         cambium::detail::TransferStruct transfer) const {
-  cambium::detail::read_json_value(*find(content_->said, name), name.c_str(), object, usual, transfer, path_, nullptr);
+void ParameterFile::read(std::string const& name, cambium::TypeInfo const& type, void* object) const {
+  cambium::detail::read_json_value(*find(content_->said, name), type, object, name.c_str(), path_, nullptr);
+  cambium::detail::check_values(type, object, name.c_str(), path_);
 }
 
-void ParameterFile::show_values(std::string const& name, void const* object, void const* usual,
-                                cambium::detail::TransferStruct transfer) {
-  auto const own =
-      cambium::detail::json_value(const_cast<void*>(object), usual, transfer,  // writes back what it is given
-                                  cambium::JsonDetail::everything, nullptr);
+void ParameterFile::show_values(std::string const& name, cambium::TypeInfo const& type, void const* object) {
+  auto const own = cambium::detail::json_value(type, object, cambium::JsonDetail::everything, nullptr);
   for (auto& [shown, value] : content_->shown)
     if (shown == name) return keep_common(value, own);
   content_->shown.push_back({name, own});

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cambium/core/parameters.hpp"
-#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/core/type_info.hpp"
 
 namespace CLI {
 class App;
@@ -43,10 +43,8 @@ class ParameterFile {
   template <cambium::Described T>
   void set(T& object, std::string const& name = T::name) const {
     if (!has(name)) return;
-    T const usual{};
     T changed = object;
-    read(name, &changed, &usual, &cambium::detail::transfer_any<T>);
-    cambium::detail::check_values(name.c_str(), &changed, &cambium::detail::read_struct<T>, path_);
+    read(name, cambium::type_info<T>(), &changed);
     object = changed;
   }
 
@@ -54,8 +52,7 @@ class ParameterFile {
   /// printed.
   template <cambium::Described T>
   void show(T const& object, std::string const& name = T::name) {
-    T const usual{};
-    if (prints_) show_values(name, &object, &usual, &cambium::detail::transfer_any<T>);
+    if (prints_) show_values(name, cambium::type_info<T>(), &object);
   }
 
   /// The file; empty if none was given.
@@ -73,9 +70,8 @@ class ParameterFile {
 
   void know(std::string const& name);
   [[nodiscard]] bool has(std::string const& name) const;
-  void read(std::string const& name, void* object, void const* usual, cambium::detail::TransferStruct transfer) const;
-  void show_values(std::string const& name, void const* object, void const* usual,
-                   cambium::detail::TransferStruct transfer);
+  void read(std::string const& name, cambium::TypeInfo const& type, void* object) const;
+  void show_values(std::string const& name, cambium::TypeInfo const& type, void const* object);
 
   std::string path_;
   bool prints_ = false;

@@ -2,14 +2,12 @@
 
 #include "cambium/core/json.hpp"
 
-void examples::read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
-                         std::string const& json) {
-  cb::detail::read_json_value(cb::detail::parse_json(json, "the ego"), name, object, usual, transfer, "the ego",
-                              nullptr);
+void examples::read_edit(cb::TypeInfo const& type, void* object, std::string const& json) {
+  cb::detail::read_json_value(cb::detail::parse_json(json, "the ego"), type, object, type.name, "the ego", nullptr);
 }
 
-std::string examples::difference(void* object, void const* usual, cb::detail::TransferStruct transfer) {
-  return cb::detail::print_json(cb::detail::json_value(object, usual, transfer, cb::JsonDetail::differences, nullptr));
+std::string examples::difference(cb::TypeInfo const& type, void const* object) {
+  return cb::detail::print_json(cb::detail::json_value(type, object, cb::JsonDetail::differences, nullptr));
 }
 
 void examples::require_json(std::string const& text, std::string const& where) {

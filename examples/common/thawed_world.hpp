@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/core/type_info.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/off_road.hpp"
 #include "cambium/snapshot/snapshot.hpp"
@@ -22,11 +22,10 @@
 namespace examples {
 
 /// Reads JSON into a described struct. Throws `ParameterError` at "the ego".
-void read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
-               std::string const& json);
+void read_edit(cb::TypeInfo const& type, void* object, std::string const& json);
 
 /// A described struct as JSON without its defaults. Throws `Error` for NaN.
-[[nodiscard]] std::string difference(void* object, void const* usual, cb::detail::TransferStruct transfer);
+[[nodiscard]] std::string difference(cb::TypeInfo const& type, void const* object);
 
 /// `Cycle` is the second part of the snapshot, with `ego`, `time_step`, and perhaps `late`, by how much this cycle
 /// takes longer.
@@ -81,9 +80,8 @@ class ThawedWorld final : public Thawed {
     auto memory = world_.record(cycle_.ego).memory;
     auto behavior = record().behavior;
     auto const read = [&]<class Model>(Model& model) {
-      Model const usual{};
       Model edited = model;
-      read_edit(cb::detail::struct_name<Model>(), &edited, &usual, &cb::detail::transfer_any<Model>, json);
+      read_edit(cb::type_info<Model>(), &edited, json);
       if (is_in_range(model)) cb::check_parameters(edited, "the ego");
       model = std::move(edited);
     };
@@ -120,10 +118,8 @@ class ThawedWorld final : public Thawed {
  private:
   template <class Model>
   [[nodiscard]] static std::string json_of(Model const& model) {
-    Model const usual{};
-    Model copy = model;
     try {
-      return difference(&copy, &usual, &cb::detail::transfer_any<Model>);
+      return difference(cb::type_info<Model>(), &model);
     } catch (cb::Error const&) {  // JSON has no NaN
       return cb::to_string(model) + "\n";
     }

@@ -39,7 +39,8 @@ template <class Value>
     std::snprintf(number, sizeof number, "%.4g", value);
     return cb::detail::with_unit(number, info.unit);
   } else {
-    return cb::detail::with_unit(cb::detail::value_text(info, cb::detail::ParameterValue(value)), info.unit);
+    return cb::detail::with_unit(cb::detail::value_text(info, cb::PlainValue::at(&value, cb::type_info<Value>())),
+                                 info.unit);
   }
 }
 

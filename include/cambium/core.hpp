@@ -8,10 +8,9 @@
 ///
 /// **Errors.** Loading and building throw `Error`s; the step path does not throw. `CAMBIUM_ASSERT` guards invariants.
 ///
-/// `core/json.hpp` and `core/json_document.hpp` (need nlohmann_json), `core/transfer_parameters.hpp` (for file formats
-/// of your own), `core/set_parameter.hpp` (by key), `core/nearest_names.hpp`, `core/text.hpp` (parses numbers),
-/// `core/markup.hpp` (text in HTML and JSON), `core/read_file.hpp`, `core/write_file.hpp`, `core/stable_sort.hpp` and
-/// `core/state_vector.hpp` (Eigen) are included by name.
+/// `core/json.hpp` and `core/json_document.hpp` (need nlohmann_json), `core/binary.hpp`, `core/nearest_names.hpp`,
+/// `core/text.hpp` (parses numbers), `core/markup.hpp` (text in HTML and JSON), `core/read_file.hpp`,
+/// `core/write_file.hpp`, `core/stable_sort.hpp` and `core/state_vector.hpp` (Eigen) are included by name.
 #pragma once
 
 // First: it says which language and flags cambium needs.
@@ -28,4 +27,5 @@
 #include "cambium/core/plan.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/core/state.hpp"
+#include "cambium/core/type_info.hpp"
 #include "cambium/core/version.hpp"

@@ -239,7 +239,7 @@ TEST_CASE("bytes of another kind, cut short or changed are refused") {
     return std::string();
   };
   CHECK(refused("{}") == "f.bin: is no binary file of cambium; give one, or a JSON file");
-  CHECK(refused(to_binary(Window{})).find("for other structs") != std::string::npos);
+  CHECK(refused(to_binary(Window{})).find("was saved with other fields") != std::string::npos);
   for (std::size_t size = 0; size < bytes.size(); ++size) CHECK_FALSE(refused(bytes.substr(0, size)).empty());
   for (std::size_t at = 0; at < bytes.size(); ++at)
     for (int bit = 0; bit < 8; ++bit) {
@@ -248,16 +248,16 @@ TEST_CASE("bytes of another kind, cut short or changed are refused") {
       CHECK_FALSE(refused(changed).empty());
     }
   // With a right checksum, the content is read or refused, never worse.
-  auto const payload = bytes.substr(32);
+  auto const content = bytes.substr(24);
   std::uint32_t state = 7;
   auto const random = [&state](std::size_t below) {
     state = state * 1664525u + 1013904223u;
     return static_cast<std::size_t>(state >> 8) % below;
   };
   for (int i = 0; i < 20000; ++i) {
-    auto changed = payload;
+    auto changed = content;
     for (std::size_t k = 0; k < 1 + random(3); ++k) changed[random(changed.size())] = static_cast<char>(random(256));
-    static_cast<void>(refused(detail::sealed(changed, detail::schema_of<Everything>())));
+    static_cast<void>(refused(detail::sealed(changed)));
   }
 }
 

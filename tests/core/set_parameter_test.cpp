@@ -1,4 +1,4 @@
-#include "cambium/core/set_parameter.hpp"
+#include "cambium/core/parameters.hpp"
 
 #include <doctest/doctest.h>
 

@@ -10,7 +10,7 @@
 
 #include "../world/fixtures.hpp"
 #include "cambium/core/json.hpp"
-#include "cambium/core/set_parameter.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/observer/observer_chain.hpp"
 #include "cambium/observer/observer_set.hpp"
 #include "cambium/observer/occluded.hpp"

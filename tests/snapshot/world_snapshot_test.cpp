@@ -41,27 +41,32 @@ static_assert(detail::describes_all<MemoryOf<HumanDriver<ConstantAcceleration>>>
 /// Names of the memories' fields, and whether somebody's has ever been other than at first.
 using Moved = std::map<std::string, bool>;
 
-template <class Value>
-void note_moves(Moved& moved, std::string const& name, Value const& value, Value const& usual) {
-  if constexpr (Described<Value>) {
-    for_each_parameter<Value>([&](auto const& p) {
-      std::string field = detail::struct_name<Value>();
-      field.append(".").append(p.name);
-      note_moves(moved, field, value.*p.field, usual.*p.field);
-    });
-  } else if constexpr (detail::Variant<Value>) {
-    detail::with_alternative(value,
-                             [&]<class Model>(Model const& model, auto) { note_moves(moved, name, model, Model{}); });
-  } else {
-    bool& has_moved = moved[name];
-    has_moved = has_moved || !detail::same_bits(value, usual);
-    if constexpr (detail::Optional<Value>) {
-      if (value) note_moves(moved, name + ".value", *value, std::remove_cvref_t<decltype(*value)>{});
-    } else if constexpr (detail::ParameterList<Value> && !std::is_same_v<Value, std::string>) {
-      for (auto const& element : detail::elements_of(value))
-        note_moves(moved, name + ".element", element, std::remove_cvref_t<decltype(element)>{});
-    }
+void note_moves(Moved& moved, std::string const& name, TypeInfo const& type, void const* value, void const* usual) {
+  using Kind = TypeInfo::Kind;
+  if (type.kind == Kind::structure) {
+    for (auto const& field : type.fields())
+      note_moves(moved, std::string(type.name) + "." + field.name, field.type(), field.in(value), field.in(usual));
+    return;
   }
+  if (type.kind == Kind::one_of) {
+    auto const& model = type.alternatives[type.index(value)]();
+    return note_moves(moved, name, model, type.held(value), model.usual());
+  }
+  bool& has_moved = moved[name];
+  has_moved = has_moved || !detail::are_equal(type, value, usual, detail::Equality::of_bits);
+  if (type.kind == Kind::optional) {
+    if (auto const* const held = type.held(value))
+      note_moves(moved, name + ".value", type.element(), held, type.element().usual());
+  } else if (type.kind == Kind::list) {
+    auto const elements = type.elements(value);
+    for (std::size_t i = 0; i < elements.count; ++i)
+      note_moves(moved, name + ".element", type.element(), elements[i], type.element().usual());
+  }
+}
+
+template <class Value>
+void note_moves(Moved& moved, std::string const& name, Value const& value) {
+  note_moves(moved, name, type_info<Value>(), &value, type_info<Value>().usual());
 }
 
 /// Draws about half of a model's parameters: numbers near their defaults, those that are 0 between 0 and 1, switches
@@ -212,8 +217,8 @@ TEST_CASE("what drivers remember goes on when they queue, stop, turn and react l
       for (auto& record : frame.agents) std::visit([&](auto& memory) { choose(memory, random); }, record.memory);
       world.restore(frame);
       compare(world, again, 50, seed % 4 == 0 ? 0.02 : 0.25, static_cast<int>(seed), [&](auto const& record) {
-        note_moves(moved, "memory", record.memory, {});
-        note_moves(moved, "lane", record.lane, {});
+        note_moves(moved, "memory", record.memory);
+        note_moves(moved, "lane", record.lane);
       });
     }
   }
@@ -247,8 +252,8 @@ TEST_CASE("every execution, vehicle and observer model goes on bit by bit") {
                  .dynamics = varied(one_of<Vehicles>(i % 5), random),
                  .observer = varied(one_of<Eyes>(i / 2), random)});
     compare(world, again, 15, 0.2, static_cast<int>(seed), [&](auto const& record) {
-      note_moves(moved, "execution", record.execution, {});
-      note_moves(moved, "past", record.past, {});
+      note_moves(moved, "execution", record.execution);
+      note_moves(moved, "past", record.past);
     });
   }
   for (auto const& [field, has_moved] : moved) {

@@ -6,8 +6,6 @@
 #include <iterator>
 #include <limits>
 #include <string>
-#include <type_traits>
-#include <variant>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"
@@ -15,57 +13,39 @@
 
 namespace support {
 
-/// Calls `f(number)` for each number in `value` that can be changed in place.
-template <class Value, class F>
-void for_each_number(Value& value, F const& f) {
-  using namespace cambium;
-  if constexpr (Described<Value>) {
-    for_each_parameter<Value>([&](auto const& p) { for_each_number(value.*p.field, f); });
-  } else if constexpr (detail::Variant<Value>) {
-    detail::with_alternative(value, [&](auto const&, auto place) { for_each_number(*std::get_if<place>(&value), f); });
-  } else if constexpr (detail::Optional<Value>) {
-    if (value) for_each_number(*value, f);
-  } else if constexpr (requires { requires !std::is_const_v<std::remove_reference_t<decltype(value.data()[0])>>; }) {
-    if constexpr (!std::is_same_v<Value, std::string>)
-      for (std::size_t i = 0; i < value.size(); ++i) for_each_number(value.data()[i], f);
-  } else if constexpr (std::is_arithmetic_v<Value> || std::is_enum_v<Value>) {
-    f(value);
-  }
-}
-
 /// Another number, often one that is easily forgotten. None is near overflow, as no state is: see `is_finite`.
-template <class Number>
-void spoil(Number& number, cambium::RandomStream& random) {
-  using Limits = std::numeric_limits<Number>;
-  if constexpr (std::is_enum_v<Number>) {
-    auto whole = static_cast<std::underlying_type_t<Number>>(number);
-    spoil(whole, random);
-    number = static_cast<Number>(whole);
-  } else if constexpr (std::is_same_v<Number, bool>) {
-    number = !number;
-  } else if constexpr (std::is_floating_point_v<Number>) {
-    Number const all[] = {
-        Limits::quiet_NaN(), Limits::infinity(),   -Limits::infinity(),   Number(1e30),
-        Number(-1e30),       Number(1e9),          Number(1e-30),         Number(0),
-        Number(-1),          Number(-number),      Number(number * 1000), Number(number + 1),
-        Number(number - 1),  Number(number + 100), Number(number - 100),  Number(cambium::uniform01(random))};
-    number = all[random() % std::size(all)];
+inline void spoil(cambium::TypeInfo const& type, void* place, cambium::RandomStream& random) {
+  using cambium::TypeInfo;
+  auto value = cambium::PlainValue::at(place, type);
+  if (type.kind == TypeInfo::Kind::boolean) {
+    value.bits = value.bits == 0;
+  } else if (type.is_real()) {
+    using Limits = std::numeric_limits<double>;
+    double const number = value.number;
+    double const all[] = {Limits::quiet_NaN(),
+                          Limits::infinity(),
+                          -Limits::infinity(),
+                          1e30,
+                          -1e30,
+                          1e9,
+                          1e-30,
+                          0.0,
+                          -1.0,
+                          -number,
+                          number * 1000,
+                          number + 1,
+                          number - 1,
+                          number + 100,
+                          number - 100,
+                          cambium::uniform01(random)};
+    value.number = all[random() % std::size(all)];
   } else {
-    using Whole = std::make_unsigned_t<Number>;  // wraps
-    auto const whole = static_cast<Whole>(number);
-    Whole const all[] = {0,
-                         1,
-                         2,
-                         3,
-                         255,
-                         Whole(Limits::max()),
-                         Whole(Limits::min()),
-                         Whole(whole + 1u),
-                         Whole(whole - 1u),
-                         Whole(random() % 16),
-                         Whole(random())};
-    number = static_cast<Number>(all[random() % std::size(all)]);
+    auto const highest = cambium::PlainValue::highest(type).bits, lowest = cambium::PlainValue::lowest(type).bits;
+    std::uint64_t const all[] = {0,       1, 2, 3, 255, highest, lowest, value.bits + 1, value.bits - 1, random() % 16,
+                                 random()};
+    value.bits = all[random() % std::size(all)];  // wraps
   }
+  value.store(place, type);
 }
 
 struct Spoilt {
@@ -77,7 +57,7 @@ template <class Parts>
 [[nodiscard]] std::string snapshot_of(Parts const& parts, cambium::Map const& map) {
   using namespace cambium::detail;
   SavedPart const part{"world", &parts, [](OutArchive& archive, char const* key, void const* object) {
-                         FieldWriter(archive).write(key, *static_cast<Parts const*>(object));
+                         archive_fields(archive, key, *static_cast<Parts const*>(object));
                        }};
   return with_head(archive_parts(cambium::SnapshotFormat::binary, {&map, 0.0}, {&part, 1}), {});
 }
@@ -90,19 +70,20 @@ template <class World, class Tell>
   Spoilt result;
   auto whole = detail::archived(world);
   std::size_t numbers = 0;
-  for_each_number(whole, [&](auto const&) { ++numbers; });
+  auto const& type = type_info<decltype(whole)>();
+  detail::edit_values(type, &whole, "spoilt", [&](TypeInfo const&, void*) { ++numbers; });
   for (int i = 0; i < count; ++i) {
     RandomStream random(static_cast<std::uint64_t>(i), 0, 0);
     auto parts = whole;
-    for (auto k = 1 + random() % 3; k > 0; --k) {
-      std::size_t const at = random() % numbers;
-      std::size_t j = 0;
-      for_each_number(parts, [&](auto& number) {
-        if (j++ == at) spoil(number, random);
-      });
-    }
     World other(world.shared_map());
     try {
+      for (auto k = 1 + random() % 3; k > 0; --k) {
+        std::size_t const at = random() % numbers;
+        std::size_t j = 0;
+        detail::edit_values(type, &parts, "spoilt", [&](TypeInfo const& plain, void* number) {
+          if (j++ == at) spoil(plain, number, random);
+        });
+      }
       from_snapshot(snapshot_of(parts, world.map()), "spoilt", other);
     } catch (Error const&) {
       ++result.refused;

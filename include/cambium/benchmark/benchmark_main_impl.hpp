@@ -208,7 +208,7 @@ CAMBIUM_COLD std::string lines_of(RunResult const& result) {
     if constexpr (std::is_same_v<Field, std::string>)
       text += (result.*entry.field).c_str();
     else
-      text += with_unit(value_text(entry, ParameterValue(result.*entry.field)), entry.unit);
+      text += with_unit(value_text(entry, PlainValue::at(&(result.*entry.field), type_info<Field>())), entry.unit);
     text += "\n";
   });
   return text;

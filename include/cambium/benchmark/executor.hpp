@@ -21,6 +21,17 @@ struct JobOutcome {
   std::string snapshot{};   ///< as in `Run`
   std::string problem{};    ///< why one of them is missing though it was wanted
   std::uint64_t setup = 0;  ///< hash of set and contender, as the process that ran it has them
+
+  static constexpr char const* name = "outcome";
+  static constexpr auto parameters() {
+    using P = JobOutcome;
+    return parameter_list(parameter("result", &P::result, "-", {}, "what came of the run"),
+                          parameter("times", &P::times, "-", {}, "how long its plans took"),
+                          parameter("replay", &P::replay, "-", {}, "page for browsers"),
+                          parameter("snapshot", &P::snapshot, "-", {}, "as in Run"),
+                          parameter("problem", &P::problem, "-", {}, "why one of them is missing"),
+                          parameter("setup", &P::setup, "-", {}, "hash of set and contender"));
+  }
 };
 
 /// Where a benchmark's jobs run: on threads of this process (`on_threads`), in processes of their own

@@ -20,6 +20,7 @@
 #include "cambium/benchmark/detail/job_process.hpp"
 #include "cambium/benchmark/detail/outcome_bytes.hpp"
 #include "cambium/benchmark/executor.hpp"
+#include "cambium/core/binary.hpp"
 #include "cambium/core/error.hpp"
 
 /// A benchmark on the ranks of an MPI program: rank 0 has the store and hands out jobs, the others run them, each in a
@@ -53,10 +54,10 @@ template <class Communicator>
   if (!status) return std::nullopt;
   std::string bytes(static_cast<std::size_t>(*status->template count<char>()), '\0');
   ranks.recv(status->source(), status->tag(), bytes.data(), static_cast<int>(bytes.size()));
-  MessageReader reader(bytes);
-  RankMessage message{status->source(), status->tag(), reader.number(), 0, {}};
-  message.job = static_cast<std::size_t>(reader.number());
-  message.content = reader.rest();
+  ByteSource source(bytes, "message");
+  RankMessage message{status->source(), status->tag(), source.integer("session", 8, false), 0, {}};
+  message.job = static_cast<std::size_t>(source.integer("job", 8, false));
+  message.content = source.rest();
   return message;
 }
 
@@ -64,8 +65,9 @@ template <class Communicator>
 void send(Communicator const& ranks, int to, int kind, std::uint64_t session, std::size_t job = 0,
           std::string_view content = {}) {
   std::string bytes;
-  append_number(bytes, session, 8);
-  append_number(bytes, job, 8);
+  ByteSink sink(bytes);
+  sink.integer("session", session, 8, false);
+  sink.integer("job", job, 8, false);
   bytes += content;
   ranks.send(to, kind, bytes.data(), static_cast<int>(bytes.size()));
 }

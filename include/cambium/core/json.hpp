@@ -10,7 +10,7 @@
 #include "cambium/core/json_document.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/read_file.hpp"
-#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/core/type_info.hpp"
 
 /// Described structs as JSON: parameters, scenarios, scenario sets. Needs nlohmann_json (`cambium::json`).
 ///
@@ -40,12 +40,11 @@ class LaneNames {
 
 namespace detail {
 
-/// A struct as a document; `transfer` writes back into `object` what it was given.
-[[nodiscard]] JsonValue json_value(void* object, void const* usual, TransferStruct transfer, JsonDetail detail,
-                                   LaneNames const* lanes);
+/// A struct as a document.
+[[nodiscard]] JsonValue json_value(TypeInfo const& type, void const* object, JsonDetail detail, LaneNames const* lanes);
 /// Reads `object`, whose name is `name` in messages.
-void read_json_value(JsonValue const& document, char const* name, void* object, void const* usual,
-                     TransferStruct transfer, std::string const& where, LaneNames const* lanes);
+void read_json_value(JsonValue const& document, TypeInfo const& type, void* object, char const* name,
+                     std::string const& where, LaneNames const* lanes);
 
 }  // namespace detail
 
@@ -54,9 +53,7 @@ void read_json_value(JsonValue const& document, char const* name, void* object, 
 template <Described T>
 [[nodiscard]] std::string to_json(T const& object, JsonDetail detail = JsonDetail::differences,
                                   LaneNames const* lanes = nullptr) {
-  static T const usual{};
-  auto copy = object;  // a transfer writes back what it was given
-  return detail::print_json(detail::json_value(&copy, &usual, &detail::transfer_any<T>, detail, lanes));
+  return detail::print_json(detail::json_value(type_info<T>(), &object, detail, lanes));
 }
 
 /// Reads JSON text into `object`; what the text does not say, stays. Throws `ParameterError`, and leaves the object as
@@ -65,10 +62,9 @@ template <Described T>
 /// O(text).
 template <Described T>
 void read_json(T& object, std::string_view text, std::string const& where = "JSON", LaneNames const* lanes = nullptr) {
-  T const usual{};
   T read = object;
-  detail::read_json_value(detail::parse_json(text, where), detail::struct_name<T>(), &read, &usual,
-                          &detail::transfer_any<T>, where, lanes);
+  detail::read_json_value(detail::parse_json(text, where), type_info<T>(), &read, detail::struct_name<T>(), where,
+                          lanes);
   check_parameters(read, where);
   object = std::move(read);
 }

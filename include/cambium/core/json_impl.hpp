@@ -5,12 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
-#include <span>
 #include <string>
-#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "cambium/core/error.hpp"
@@ -21,127 +17,83 @@
 #include "cambium/core/nearest_names.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
-#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/core/type_info.hpp"
 
 namespace cambium::detail {
 
-/// Where a transfer is: keys and elements from the root.
-class JsonPath {
- public:
-  void push(char const* key) { parts_.push_back({key, 0}); }
-  void push(std::size_t element) { parts_.push_back({nullptr, element}); }
-  void pop() { parts_.pop_back(); }
-  [[nodiscard]] std::string text() const {
-    std::string text;
-    for (auto const& part : parts_)
-      if (part.key == nullptr)
-        text += "[" + std::to_string(part.element) + "]";
-      else
-        (text += text.empty() ? "" : ".") += part.key;
-    return text;
-  }
-
- private:
-  struct Part {
-    char const* key;
-    std::size_t element;
-  };
-  std::vector<Part> parts_;
-};
-
 /// Turns a struct into a document.
-class JsonWriter final : public ParameterTransfer {
+class JsonWriter {
  public:
   JsonWriter(JsonDetail detail, LaneNames const* lanes)
       : writes_all_(detail == JsonDetail::everything), lanes_(lanes) {}
 
-  [[nodiscard]] JsonValue& root() { return *places_.front().value; }
-
-  [[nodiscard]] bool field(char const* key) override {
-    path_.push(key);
-    places_.push_back({std::make_unique<JsonValue>(), writes_all_, key});
-    return true;
-  }
-  void element(std::size_t index) override {
-    path_.push(index);
-    places_.push_back({std::make_unique<JsonValue>(), true, nullptr});
-  }
-  void end() override {
-    path_.pop();
-    auto place = std::move(places_.back());
-    places_.pop_back();
-    if (!place.is_written) return;
-    auto& parent = places_.back();
-    if (place.key == nullptr)
-      std::get<std::vector<JsonValue>>(parent.value->value).push_back(std::move(*place.value));
-    else
-      std::get<std::vector<JsonValue::Member>>(parent.value->value).push_back({place.key, std::move(*place.value)});
-  }
-
-  void begin_struct() override {
-    auto& place = places_.back();
-    if (!place.alternative.empty()) {
-      places_.push_back({std::make_unique<JsonValue>(), true, nullptr});
-      places_.back().value->value = std::vector<JsonValue::Member>();
-    } else {
-      place.value->value = std::vector<JsonValue::Member>();
+  /// Writes a value; returns whether it has to be in the file, because it differs from `usual`.
+  bool write(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type, void const* object,
+             void const* usual, JsonValue& json) const {
+    using Kind = TypeInfo::Kind;
+    switch (type.kind) {
+      case Kind::structure:
+        json.value = members(&path, type, object, usual);
+        return json.has_parts();
+      case Kind::one_of:
+        return write_alternative(path, type, object, usual, json);
+      case Kind::optional:
+        if (auto const* const held = type.held(object))
+          return write(path, info, type.element(), held, type.element().usual(), json), true;
+        return false;
+      case Kind::list: {
+        auto const elements = type.elements(object);
+        std::vector<JsonValue> items(elements.count);
+        for (std::size_t i = 0; i < elements.count; ++i)
+          write(path.at(i), info, type.element(), elements[i], type.element().usual(), items[i]);
+        json.value = std::move(items);
+        return elements.count > 0 || type.elements(usual).count > 0;
+      }
+      case Kind::text:
+        json.value = *static_cast<std::string const*>(object);
+        break;
+      default:
+        json = json_of(path, info, PlainValue::at(object, type));
     }
+    return !are_equal(type, object, usual, Equality::of_values);
   }
-  void end_struct() override {
-    auto& place = places_.back();
-    if (places_.size() > 1 && !places_[places_.size() - 2].alternative.empty()) {
-      auto inner = std::move(place);
-      places_.pop_back();
-      auto& outer = places_.back();
-      auto const name = std::exchange(outer.alternative, {});
-      outer.is_written = outer.is_written || inner.value->has_parts();
-      if (!inner.value->has_parts())
-        outer.value->value = name;
-      else
-        outer.value->value = std::vector<JsonValue::Member>{{name, std::move(*inner.value)}};
-      return;
+
+  /// The fields of a struct that have to be in the file.
+  [[nodiscard]] std::vector<JsonValue::Member> members(ParameterPath const* path, TypeInfo const& type,
+                                                       void const* object, void const* usual) const {
+    std::vector<JsonValue::Member> members;
+    for (auto const& field : type.fields()) {
+      JsonValue::Member member{field.name};
+      if (write({path, field.name}, field, field.type(), field.in(object), field.in(usual), member.second) ||
+          writes_all_)
+        members.push_back(std::move(member));
     }
-    place.is_written = place.is_written || place.value->has_parts();
+    return members;
   }
-  [[nodiscard]] std::size_t list(std::size_t length, std::size_t usual, bool) override {
-    auto& place = places_.back();
-    place.value->value = std::vector<JsonValue>();
-    place.is_written = place.is_written || length > 0 || usual > 0;
-    return length;
-  }
-  [[nodiscard]] std::size_t alternative(std::span<char const* const> names, std::size_t now,
-                                        std::size_t usual) override {
-    if (names[now] == nullptr)
-      throw ParameterError(where(), "holds a struct that is not described, or has no default: a file cannot hold it",
-                           "give it `parameters()` and `name`");
-    auto& place = places_.back();
-    place.alternative = alternative_name(names, now);
-    place.is_written = place.is_written || now != usual;
-    return now;
-  }
-  [[nodiscard]] bool presence(bool now) override {
-    places_.back().is_written = places_.back().is_written || now;
-    return now;
-  }
-
-  [[nodiscard]] ParameterValue value(ParameterInfo const& info, ParameterValue const& now, bool is_usual,
-                                     ParameterValue const&, ParameterValue const&) override {
-    auto& place = places_.back();
-    place.is_written = place.is_written || !is_usual;
-    place.value->value = json_of(info, now).value;
-    return now;
-  }
-  void text(std::string& text, bool is_usual) override {
-    auto& place = places_.back();
-    place.is_written = place.is_written || !is_usual;
-    place.value->value = text;
-  }
-
-  [[nodiscard]] std::string where() const override { return path_.text(); }
 
  private:
-  [[nodiscard]] JsonValue json_of(ParameterInfo const& info, ParameterValue const& value) const {
-    using Kind = ParameterValue::Kind;
+  bool write_alternative(ParameterPath const& path, TypeInfo const& type, void const* object, void const* usual,
+                         JsonValue& json) const {
+    auto const index = type.index(object);
+    auto const& model = type.alternatives[index]();
+    if (!model.is_storable())
+      throw ParameterError(path.text(),
+                           "holds a struct that is not described, or has no default: a file cannot hold it",
+                           "give it `parameters()` and `name`");
+    bool const is_usual = type.index(usual) == index;
+    ParameterPath const inner_path{&path, model.name};
+    auto inner = members(&inner_path, model, type.held(object), is_usual ? type.held(usual) : model.usual());
+    bool const is_written = !is_usual || !inner.empty();
+    auto name = alternative_name(type, index);
+    if (inner.empty())
+      json.value = std::move(name);
+    else
+      json.value = std::vector<JsonValue::Member>{{std::move(name), {std::move(inner)}}};
+    return is_written;
+  }
+
+  [[nodiscard]] JsonValue json_of(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) const {
+    using Kind = TypeInfo::Kind;
     switch (value.kind) {
       case Kind::boolean:
         return {value.bits != 0};
@@ -149,6 +101,7 @@ class JsonWriter final : public ParameterTransfer {
         return {value_text(info, value)};
       case Kind::id:
       case Kind::lane:
+      case Kind::corridor:
         if (auto const id = static_cast<LaneId>(value.bits); !is_valid(id))
           return {std::string("none")};
         else if (value.kind == Kind::lane && lanes_ != nullptr)
@@ -158,152 +111,139 @@ class JsonWriter final : public ParameterTransfer {
         return {static_cast<std::int64_t>(value.bits)};
       case Kind::unsigned_integer:
         return {value.bits};
-      case Kind::single_precision:
-      case Kind::number:
+      default:
         break;
     }
-    if (std::isnan(value.number)) throw ParameterError(where(), "is not a number", "files hold numbers and infinity");
+    if (std::isnan(value.number))
+      throw ParameterError(path.text(), "is not a number", "files hold numbers and infinity");
     if (std::isinf(value.number)) return {std::string(value.number > 0 ? "inf" : "-inf")};
     return {value.number};
   }
 
-  struct Place {
-    std::unique_ptr<JsonValue> value;
-    bool is_written = false;
-    char const* key = nullptr;
-    std::string alternative{};  ///< the name of the alternative that follows
-  };
-
   bool writes_all_;
   LaneNames const* lanes_;
-  JsonPath path_;
-  std::vector<Place> places_ = [] {
-    std::vector<Place> places;
-    places.push_back({std::make_unique<JsonValue>(), true, nullptr});
-    return places;
-  }();
 };
 
 /// Fills a struct from a document.
-class JsonReader final : public ParameterTransfer {
+class JsonReader {
  public:
-  JsonReader(JsonValue const& document, char const* name, std::string const& where, LaneNames const* lanes)
-      : file_(where), lanes_(lanes), places_{{&document}} {
-    path_.push(name);
+  JsonReader(std::string const& file, LaneNames const* lanes) : file_(file), lanes_(lanes) {}
+
+  /// Reads a value. `usual`: what an alternative is at first, if the object holds another one.
+  void read(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type, void* object, void const* usual,
+            JsonValue const& json) const {
+    using Kind = TypeInfo::Kind;
+    switch (type.kind) {
+      case Kind::structure:
+        return read_struct(path, type, object, usual, json);
+      case Kind::one_of:
+        return read_alternative(path, type, object, usual, json);
+      case Kind::optional:
+        type.select(object, json.value.index() != 0);
+        if (auto const* const held = type.held(object))
+          read(path, info, type.element(), const_cast<void*>(held), type.element().usual(), json);
+        return;
+      case Kind::list: {
+        auto const* const items = json.items();
+        if (items == nullptr) refuse(path, json, "a list");
+        if (items->size() < type.least || items->size() > type.most)
+          throw ParameterError(
+              where(path), "has " + std::to_string(items->size()) + " elements",
+              std::string(type.least < type.most ? "give at most " : "give ") + std::to_string(type.most));
+        auto const& element = type.element();
+        return type.fill(object, items->size(), where(path), [&](std::size_t i, void* item, void const*) {
+          read(path.at(i), info, element, item, element.usual(), (*items)[i]);
+        });
+      }
+      case Kind::text:
+        if (auto const* const word = json.get<std::string>())
+          *static_cast<std::string*>(object) = *word;
+        else
+          refuse(path, json, "a text, in quotes");
+        return;
+      default:
+        plain(path, info, type, json).store(object, type);
+    }
   }
 
-  [[nodiscard]] bool field(char const* key) override {
-    known_.push_back(key);
-    auto& place = places_.back();
-    auto const* const members = place.value != nullptr ? place.value->members() : nullptr;
-    if (members == nullptr) return false;
-    // Files mostly have the keys in the order of the description.
-    for (std::size_t i = 0; i < members->size(); ++i) {
-      auto const at = (place.next + i) % members->size();
-      if ((*members)[at].first != key) continue;
-      place.next = at + 1;
-      ++place.found;
-      path_.push(key);
-      places_.push_back({&(*members)[at].second});
-      return true;
-    }
-    return false;
-  }
-  void element(std::size_t index) override {
-    path_.push(index);
-    places_.push_back({&(*places_.back().value->items())[index]});
-  }
-  void end() override {
-    path_.pop();
-    places_.pop_back();
-  }
-
-  void begin_struct() override {
-    auto& place = places_.back();
-    if (place.alternative != nullptr) {
-      path_.push(place.alternative);
-      places_.push_back({place.inner});
-    }
-    auto& own = places_.back();
-    own.first_known = known_.size();
-    if (own.value != nullptr && own.value->members() == nullptr) refuse("an object");
-  }
-  void end_struct() override {
-    auto const& place = places_.back();
-    if (place.value != nullptr && place.found < place.value->members()->size()) {
-      std::vector<std::string> const known(known_.begin() + static_cast<std::ptrdiff_t>(place.first_known),
-                                           known_.end());
-      for (auto const& [key, value] : *place.value->members())
-        if (std::find(known.begin(), known.end(), key) == known.end())
-          throw ParameterError(where(), "has no field \"" + key + "\"", suggestion(key, known));
-    }
-    known_.resize(place.first_known);
-    if (places_.size() > 1 && places_[places_.size() - 2].alternative != nullptr) {
-      path_.pop();
-      places_.pop_back();
-      places_.back().alternative = nullptr;
-    }
-  }
-  [[nodiscard]] std::size_t list(std::size_t length, std::size_t, bool is_fixed) override {
-    auto const* const items = places_.back().value->items();
-    if (items == nullptr) refuse("a list");
-    if (is_fixed && items->size() != length)
-      throw ParameterError(where(), "has " + std::to_string(items->size()) + " elements",
-                           "give " + std::to_string(length));
-    return items->size();
-  }
-  [[nodiscard]] std::size_t alternative(std::span<char const* const> names, std::size_t, std::size_t) override {
-    auto& place = places_.back();
-    auto const* const members = place.value->members();
-    auto const* const word = place.value->get<std::string>();
-    if (word == nullptr && (members == nullptr || members->size() != 1))
-      refuse("a name, or an object with one: {\"name\": {...}}");
-    auto const& chosen = word != nullptr ? *word : members->front().first;
+  void read_struct(ParameterPath const& path, TypeInfo const& type, void* object, void const* usual,
+                   JsonValue const& json) const {
+    auto const* const members = json.members();
+    if (members == nullptr) refuse(path, json, "an object");
+    std::size_t next = 0, found = 0;
+    for (auto const& field : type.fields())
+      for (std::size_t i = 0; i < members->size(); ++i) {
+        // Files mostly have the keys in the order of the description.
+        auto const at = (next + i) % members->size();
+        if ((*members)[at].first != field.name) continue;
+        next = at + 1;
+        ++found;
+        read({&path, field.name}, field, field.type(), field.in(object), field.in(usual), (*members)[at].second);
+        break;
+      }
+    if (found == members->size()) return;
     std::vector<std::string> known;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i] == nullptr) continue;
-      known.push_back(alternative_name(names, i));
-      if (known.back() != chosen) continue;
-      place.alternative = names[i];
-      place.inner = word != nullptr ? nullptr : &members->front().second;
-      return i;
-    }
-    std::string all;
-    for (auto const& name : known) all += (all.empty() ? "" : ", ") + name;
-    auto const near = nearest_names(chosen, known);
-    throw ParameterError(where(), "there is no \"" + chosen + "\" here",
-                         (near.empty() ? "" : suggestion(chosen, known) + " ") + ("There are: " + all));
+    for (auto const& field : type.fields()) known.emplace_back(field.name);
+    for (auto const& [key, value] : *members)
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        throw ParameterError(where(path), "has no field \"" + key + "\"", suggestion(key, known));
   }
-  [[nodiscard]] bool presence(bool) override { return places_.back().value->value.index() != 0; }
 
-  [[nodiscard]] ParameterValue value(ParameterInfo const& info, ParameterValue const& now, bool,
-                                     ParameterValue const& lowest, ParameterValue const& highest) override {
-    using Kind = ParameterValue::Kind;
-    auto const& json = *places_.back().value;
+ private:
+  void read_alternative(ParameterPath const& path, TypeInfo const& type, void* object, void const* usual,
+                        JsonValue const& json) const {
+    auto const* const members = json.members();
     auto const* const word = json.get<std::string>();
-    switch (now.kind) {
+    if (word == nullptr && (members == nullptr || members->size() != 1))
+      refuse(path, json, "a name, or an object with one: {\"name\": {...}}");
+    auto const& name = word != nullptr ? *word : members->front().first;
+    std::size_t chosen = 0;
+    while (chosen < type.alternatives.size() && (name.empty() || alternative_name(type, chosen) != name)) ++chosen;
+    if (chosen == type.alternatives.size()) {
+      auto const known = alternative_names(type);
+      std::string all;
+      for (auto const& one : known) all += (all.empty() ? "" : ", ") + one;
+      auto const near = nearest_names(name, known);
+      throw ParameterError(where(path), "there is no \"" + name + "\" here",
+                           (near.empty() ? "" : suggestion(name, known) + " ") + ("There are: " + all));
+    }
+    auto const& model = type.alternatives[chosen]();
+    auto const* const blank = type.index(usual) == chosen ? type.held(usual) : model.usual();
+    if (type.index(object) != chosen) {
+      type.select(object, chosen);
+      model.assign(const_cast<void*>(type.held(object)), blank);
+    }
+    if (word == nullptr)
+      read_struct({&path, model.name}, model, const_cast<void*>(type.held(object)), blank, members->front().second);
+  }
+
+  [[nodiscard]] PlainValue plain(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type,
+                                 JsonValue const& json) const {
+    using Kind = TypeInfo::Kind;
+    auto const* const word = json.get<std::string>();
+    switch (type.kind) {
       case Kind::boolean:
-        if (auto const* const truth = json.get<bool>()) return ParameterValue(*truth);
-        refuse("true or false");
+        if (auto const* const truth = json.get<bool>()) return with_bits(type, *truth);
+        refuse(path, json, "true or false");
       case Kind::choice:
-        if (word == nullptr) refuse("one of " + range_text(info) + ", in quotes");
-        return choice(info, now, *word);
+        if (word == nullptr) refuse(path, json, "one of " + range_text(info) + ", in quotes");
+        return choice(path, info, type, *word);
       case Kind::id:
       case Kind::lane:
-        if (word != nullptr && *word == "none") return with_bits(now, highest.bits);
-        if (now.kind == Kind::lane && lanes_ != nullptr) {
-          if (word == nullptr) refuse("a lane's name, in quotes");
-          return ParameterValue(lanes_->lane(*word, where()));
+      case Kind::corridor:
+        if (word != nullptr && *word == "none") return PlainValue::highest(type);
+        if (type.kind == Kind::lane && lanes_ != nullptr) {
+          if (word == nullptr) refuse(path, json, "a lane's name, in quotes");
+          return with_bits(type, index_of(lanes_->lane(*word, where(path))));
         }
-        return integer(json, now, lowest, highest);
+        return integer(path, type, json);
       case Kind::signed_integer:
       case Kind::unsigned_integer:
-        return integer(json, now, lowest, highest);
-      case Kind::single_precision:
-      case Kind::number:
+        return integer(path, type, json);
+      default:
         break;
     }
-    auto number = now;
+    PlainValue number{type.kind, 0.0, 0};
     if (auto const* const real = json.get<double>())
       number.number = *real;
     else if (auto const* const positive = json.get<std::uint64_t>())
@@ -314,82 +254,58 @@ class JsonReader final : public ParameterTransfer {
       number.number =
           *word == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
     else
-      refuse("a number");
+      refuse(path, json, "a number");
     return number;
   }
-  void text(std::string& text, bool) override {
-    auto const* const word = places_.back().value->get<std::string>();
-    if (word == nullptr) refuse("a text, in quotes");
-    text = *word;
-  }
 
-  [[nodiscard]] std::string where() const override { return file_ + ": " + path_.text(); }
-
- private:
-  [[noreturn]] void refuse(std::string const& expected) const {
+  [[nodiscard]] std::string where(ParameterPath const& path) const { return file_ + ": " + path.text(); }
+  [[noreturn]] void refuse(ParameterPath const& path, JsonValue const& json, std::string const& expected) const {
     std::string found;
-    if (!print_flat(*places_.back().value, 40, found)) found = places_.back().value->kind();
-    throw ParameterError(where(), "is " + found, "give " + expected);
+    if (!print_flat(json, 40, found)) found = json.kind();
+    throw ParameterError(where(path), "is " + found, "give " + expected);
   }
 
-  [[nodiscard]] static ParameterValue with_bits(ParameterValue value, std::uint64_t bits) {
-    value.bits = bits;
-    value.number = static_cast<double>(bits);
-    return value;
+  [[nodiscard]] static PlainValue with_bits(TypeInfo const& type, std::uint64_t bits) {
+    return {type.kind, static_cast<double>(bits), bits};
   }
 
-  [[nodiscard]] ParameterValue choice(ParameterInfo const& info, ParameterValue const& now,
-                                      std::string const& word) const {
+  [[nodiscard]] PlainValue choice(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type,
+                                  std::string const& word) const {
     std::vector<std::string> names;
     for (auto const name : split(info.choices, "|")) {
-      if (name == word) return with_bits(now, names.size());
+      if (name == word) return with_bits(type, names.size());
       names.emplace_back(name);
     }
-    throw ParameterError(where(), "is \"" + word + "\"", suggestion(word, names));
+    throw ParameterError(where(path), "is \"" + word + "\"", suggestion(word, names));
   }
 
-  [[nodiscard]] ParameterValue integer(JsonValue const& json, ParameterValue const& now, ParameterValue const& lowest,
-                                       ParameterValue const& highest) const {
+  [[nodiscard]] PlainValue integer(ParameterPath const& path, TypeInfo const& type, JsonValue const& json) const {
     auto const* const natural = json.get<std::uint64_t>();
     auto const* const negative = json.get<std::int64_t>();
-    if (natural == nullptr && negative == nullptr) refuse("an integer");
-    bool const is_below = negative != nullptr && (now.kind != ParameterValue::Kind::signed_integer ||
-                                                  *negative < static_cast<std::int64_t>(lowest.bits));
-    auto const most =
-        now.kind == ParameterValue::Kind::id ? with_bits(highest, highest.bits - 1) : highest;  // not none
+    if (natural == nullptr && negative == nullptr) refuse(path, json, "an integer");
+    auto const least = PlainValue::lowest(type);
+    auto const most = type.kind == TypeInfo::Kind::signed_integer || type.kind == TypeInfo::Kind::unsigned_integer
+                          ? PlainValue::highest(type)
+                          : with_bits(type, PlainValue::highest(type).bits - 1);  // the highest id is none
+    bool const is_below = negative != nullptr && (!type.is_signed || *negative < static_cast<std::int64_t>(least.bits));
     bool const is_above = natural != nullptr && *natural > most.bits;
-    if (is_below || is_above) refuse("an integer from " + value_text({}, lowest) + " to " + value_text({}, most));
-    auto value = with_bits(now, natural != nullptr ? *natural : static_cast<std::uint64_t>(*negative));
-    if (negative != nullptr) value.number = static_cast<double>(*negative);
-    return value;
+    if (is_below || is_above)
+      refuse(path, json, "an integer from " + value_text({}, least) + " to " + value_text({}, most));
+    auto const bits = natural != nullptr ? *natural : static_cast<std::uint64_t>(*negative);
+    return {type.kind, negative != nullptr ? static_cast<double>(*negative) : static_cast<double>(bits), bits};
   }
-
-  struct Place {
-    JsonValue const* value;             ///< null: an alternative without fields in the file
-    std::size_t first_known = 0;        ///< its keys in `known_` begin here
-    std::size_t next = 0, found = 0;    ///< member to look at first; number of keys found
-    char const* alternative = nullptr;  ///< that follows
-    JsonValue const* inner = nullptr;   ///< its fields
-  };
 
   std::string const& file_;
   LaneNames const* lanes_;
-  JsonPath path_;
-  std::vector<Place> places_;
-  std::vector<char const*> known_;  ///< keys of the structs that are being read
 };
 
-CAMBIUM_COLD JsonValue json_value(void* object, void const* usual, TransferStruct transfer, JsonDetail detail,
-                                  LaneNames const* lanes) {
-  JsonWriter writer(detail, lanes);
-  transfer(object, usual, writer);
-  return std::move(writer.root());
+CAMBIUM_COLD JsonValue json_value(TypeInfo const& type, void const* object, JsonDetail detail, LaneNames const* lanes) {
+  return {JsonWriter(detail, lanes).members(nullptr, type, object, type.usual())};
 }
 
-CAMBIUM_COLD void read_json_value(JsonValue const& document, char const* name, void* object, void const* usual,
-                                  TransferStruct transfer, std::string const& where, LaneNames const* lanes) {
-  JsonReader reader(document, name, where, lanes);
-  transfer(object, usual, reader);
+CAMBIUM_COLD void read_json_value(JsonValue const& document, TypeInfo const& type, void* object, char const* name,
+                                  std::string const& where, LaneNames const* lanes) {
+  JsonReader(where, lanes).read_struct({nullptr, name}, type, object, type.usual(), document);
 }
 
 }  // namespace cambium::detail

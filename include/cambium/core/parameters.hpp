@@ -1,21 +1,73 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <string>
+#include <string_view>
 
 #include "cambium/core/described.hpp"
-#include "cambium/core/detail/parameter_values.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/type_info.hpp"
 
 namespace cambium {
 
 namespace detail {
 
+/// A key's path from the outermost struct, such as "source.ids[2]". It becomes text only on request.
+struct ParameterPath {
+  static constexpr std::size_t no_list = std::numeric_limits<std::size_t>::max(), any_element = no_list - 1;
+
+  ParameterPath const* outer;
+  char const* name;
+  std::size_t element = no_list;  ///< index in the list; where the name is empty, in an element of a list of lists
+
+  [[nodiscard]] std::string text() const;
+  /// Whether any part of the path stands for all elements of a list ("[]").
+  [[nodiscard]] bool is_any_element() const {
+    return element == any_element || (outer != nullptr && outer->is_any_element());
+  }
+  /// The path of an element of the list here.
+  [[nodiscard]] ParameterPath at(std::size_t number) const {
+    return element == no_list ? ParameterPath{outer, name, number} : ParameterPath{this, "", number};
+  }
+};
+
+/// Which elements of a list are visited: each one, or a single default element that shows what elements look like.
+enum class ListElements : bool { one_default, each };
+
+/// Is told of all plain values in an object, nested ones too, in the order of the descriptions.
+class ValueVisitor {
+ public:
+  virtual void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) = 0;
+  virtual void text(ParameterPath const&, ParameterInfo const&, std::string const&) {}
+  /// A `OneOf` holds the alternative `name`; its fields follow.
+  virtual void alternative(ParameterPath const&, ParameterInfo const&, char const*) {}
+  /// The fields of a struct are done.
+  virtual void end(ParameterPath const&, TypeInfo const&, void const*) {}
+
+ protected:
+  ~ValueVisitor() = default;
+};
+
+/// Visits the values in an object, which is at `path`, the field `info` of a struct.
+void visit_values(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type, void const* object,
+                  ListElements lists, ValueVisitor& visitor);
+
+/// Calls `edit` with each plain value in an object, which it may change. `where`: for messages of a list that checks
+/// its elements.
+using EditValue = std::function<void(TypeInfo const& type, void* value)>;
+void edit_values(TypeInfo const& type, void* object, std::string const& where, EditValue const& edit);
+
+/// The range of the number at `place` in a struct; every number if it is none of its fields, nor of structs in it.
+[[nodiscard]] Range range_at(TypeInfo const& type, void const* object, double const* place);
+
 /// Shortest text that reads back as the same number.
 [[nodiscard]] std::string number_text(double value);
 
 /// The value as text: a number as above, a choice by its name, an id by its number or "none".
-[[nodiscard]] std::string value_text(ParameterInfo const& info, ParameterValue const& value);
+[[nodiscard]] std::string value_text(ParameterInfo const& info, PlainValue const& value);
 
 /// "15 m/s"; no unit for "-" and "".
 [[nodiscard]] std::string with_unit(std::string number, char const* unit);
@@ -23,20 +75,21 @@ namespace detail {
 /// The valid values as text: "[0, 70]", "(0, inf)"; the names of a choice.
 [[nodiscard]] std::string range_text(ParameterInfo const& info);
 
-// The functions below serve all structs. They do not know the type of `object`; `read` does, and passes its fields to
-// a reader, side by side with those of `other` if that is not null.
-using ReadStruct = void (*)(void const* object, void const* other, ParameterPath const* own, ListElements lists,
-                            ParameterReader& reader);
-void check_values(char const* name, void const* object, ReadStruct read, std::string const& where);
-[[nodiscard]] std::string parameters_table(void const* object, ReadStruct read);
-[[nodiscard]] std::string parameters_line(char const* name, void const* object, ReadStruct read);
-[[nodiscard]] std::uint64_t parameters_hash(char const* name, void const* object, ReadStruct read);
-[[nodiscard]] bool parameters_equal(void const* a, void const* b, ReadStruct read);
+/// Checks a struct, or that which a `OneOf` holds. `name`: of the struct in messages; null: its own.
+void check_values(TypeInfo const& type, void const* object, char const* name, std::string const& where);
+[[nodiscard]] std::string parameters_table(TypeInfo const& type);
+[[nodiscard]] std::string parameters_line(TypeInfo const& type, void const* object);
+[[nodiscard]] std::uint64_t parameters_hash(TypeInfo const& type, void const* object);
+void set_number(TypeInfo const& type, void* object, std::string_view key, double number, std::string const& where);
 
-template <Described T>
-void read_struct(void const* object, void const* other, ParameterPath const* own, ListElements lists,
-                 ParameterReader& reader) {
-  read_parameters(*static_cast<T const*>(object), static_cast<T const*>(other), own, lists, reader);
+/// How numbers are compared: by `==`, so that 0 equals -0 and NaN nothing, or bit by bit.
+enum class Equality : bool { of_values, of_bits };
+[[nodiscard]] bool are_equal(TypeInfo const& type, void const* a, void const* b, Equality equality);
+
+/// Whether the bits of two fields are equal.
+template <class Value>
+[[nodiscard]] bool same_bits(Value const& a, Value const& b) {
+  return are_equal(type_info<Value>(), &a, &b, Equality::of_bits);
 }
 
 }  // namespace detail
@@ -46,34 +99,42 @@ void read_struct(void const* object, void const* other, ParameterPath const* own
 /// after the checks of its fields.
 template <Described T>
 void check_parameters(T const& object, std::string const& where = {}) {
-  detail::check_values(detail::struct_name<T>(), &object, &detail::read_struct<T>, where);
+  detail::check_values(type_info<T>(), &object, nullptr, where);
 }
 
 /// True when all fields are equal by `==` (so 0 equals -0, and NaN equals nothing), lists element by element.
 template <Described T>
 [[nodiscard]] bool equal_parameters(T const& a, T const& b) {
-  return detail::parameters_equal(&a, &b, &detail::read_struct<T>);
+  return detail::are_equal(type_info<T>(), &a, &b, detail::Equality::of_values);
 }
 
 /// The parameters of T as a Markdown table with header: name, default, unit, range, meaning. A list is shown by the
 /// rows of one element.
 template <Described T>
 [[nodiscard]] std::string describe_parameters() {
-  T const defaults{};
-  return detail::parameters_table(&defaults, &detail::read_struct<T>);
+  static_assert(std::is_default_constructible_v<T>);
+  return detail::parameters_table(type_info<T>());
 }
 
 /// One line for logs: "idm_classic: desired_speed=15 m/s, time_headway=1.5 s". Numbers read back as the same bits.
 template <Described T>
 [[nodiscard]] std::string to_string(T const& object) {
-  return detail::parameters_line(detail::struct_name<T>(), &object, &detail::read_struct<T>);
+  return detail::parameters_line(type_info<T>(), &object);
 }
 
-/// Hash of the struct's name, its keys and the bits of its values (FNV-1a, 64 bit). It is the same on every platform
-/// and in every run, and changes when a field is renamed. Equal parameters have equal hashes.
+/// Hash of the struct's name, its keys and the bits of its values. It is the same on every platform and in every run,
+/// and changes when a field is renamed. Equal parameters have equal hashes.
 template <Described T>
 [[nodiscard]] std::uint64_t hash_parameters(T const& object) {
-  return detail::parameters_hash(detail::struct_name<T>(), &object, &detail::read_struct<T>);
+  return detail::parameters_hash(type_info<T>(), &object);
+}
+
+/// Sets the real number of a described struct that `key` names: "desired_speed", "idm.desired_speed". Throws
+/// `ParameterError` at `where` if there is none (with the nearest key), or if `number` is out of its range. Elements of
+/// lists have no such key. O(fields of the structs that the key names).
+template <Described T>
+void set_parameter(T& object, std::string_view key, double number, std::string const& where = {}) {
+  detail::set_number(type_info<T>(), &object, key, number, where);
 }
 
 }  // namespace cambium

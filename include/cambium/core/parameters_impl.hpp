@@ -1,17 +1,98 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/nearest_names.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/text.hpp"
+#include "cambium/core/type_info.hpp"
+
+namespace cambium {
+
+CAMBIUM_COLD PlainValue PlainValue::at(void const* object, TypeInfo const& type) {
+  PlainValue value{type.kind, 0.0, 0};
+  if (type.kind == TypeInfo::Kind::number) {
+    std::memcpy(&value.number, object, sizeof value.number);
+  } else if (type.kind == TypeInfo::Kind::single_precision) {
+    float number = 0;
+    std::memcpy(&number, object, sizeof number);
+    value.number = static_cast<double>(number);
+  } else {
+    auto const read = [&]<class Whole>(Whole whole) {
+      std::memcpy(&whole, object, sizeof whole);
+      value.number = static_cast<double>(whole);
+      value.bits = static_cast<std::uint64_t>(whole);
+    };
+    detail::with_integer(type.size, type.is_signed, read);
+  }
+  return value;
+}
+
+CAMBIUM_COLD void PlainValue::store(void* object, TypeInfo const& type) const {
+  if (type.kind == TypeInfo::Kind::number) {
+    std::memcpy(object, &number, sizeof number);
+  } else if (type.kind == TypeInfo::Kind::single_precision) {
+    auto const single = static_cast<float>(number);
+    std::memcpy(object, &single, sizeof single);
+  } else {
+    detail::with_integer(type.size, type.is_signed, [&]<class Whole>(Whole) {
+      auto const whole = static_cast<Whole>(bits);
+      std::memcpy(object, &whole, sizeof whole);
+    });
+  }
+}
+
+CAMBIUM_COLD PlainValue PlainValue::lowest(TypeInfo const& type) {
+  std::uint64_t bits = 0;
+  detail::with_integer(type.size, type.is_signed, [&]<class Whole>(Whole) {
+    bits = static_cast<std::uint64_t>(std::numeric_limits<Whole>::lowest());
+  });
+  return {type.kind, static_cast<double>(static_cast<std::int64_t>(bits)), bits};
+}
+
+CAMBIUM_COLD PlainValue PlainValue::highest(TypeInfo const& type) {
+  std::uint64_t bits = 0;
+  detail::with_integer(type.size, type.is_signed, [&]<class Whole>(Whole) {
+    bits = static_cast<std::uint64_t>(std::numeric_limits<Whole>::max());
+  });
+  return {type.kind, static_cast<double>(bits), bits};
+}
+
+}  // namespace cambium
 
 namespace cambium::detail {
+
+CAMBIUM_COLD std::string alternative_name(TypeInfo const& one_of, std::size_t index) {
+  auto const& model = one_of.alternatives[index]();
+  if (!model.is_storable()) return {};
+  std::string const name(model.name);
+  int number = 1;
+  for (std::size_t i = 0; i < index; ++i) {
+    auto const& other = one_of.alternatives[i]();
+    number += other.is_storable() && name == other.name;
+  }
+  return number == 1 ? name : name + "/" + std::to_string(number);
+}
+
+CAMBIUM_COLD std::vector<std::string> alternative_names(TypeInfo const& one_of) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < one_of.alternatives.size(); ++i)
+    if (one_of.alternatives[i]().is_storable()) names.push_back(alternative_name(one_of, i));
+  return names;
+}
 
 CAMBIUM_COLD std::string ParameterPath::text() const {
   std::string own = outer != nullptr ? outer->text() : std::string();
@@ -42,13 +123,14 @@ CAMBIUM_COLD std::string number_text(double value) { return shortest_text(value)
   return names.substr(0, names.find('|'));
 }
 
-CAMBIUM_COLD std::string value_text(ParameterInfo const& info, ParameterValue const& value) {
-  using Kind = ParameterValue::Kind;
+CAMBIUM_COLD std::string value_text(ParameterInfo const& info, PlainValue const& value) {
+  using Kind = TypeInfo::Kind;
   switch (value.kind) {
     case Kind::boolean:
       return value.bits != 0 ? "true" : "false";
     case Kind::id:
     case Kind::lane:
+    case Kind::corridor:
       return to_string(static_cast<AgentId>(value.bits));
     case Kind::choice:
       if (auto const name = choice_name(info.choices != nullptr ? info.choices : "", value.bits); !name.empty())
@@ -60,7 +142,7 @@ CAMBIUM_COLD std::string value_text(ParameterInfo const& info, ParameterValue co
       return std::to_string(value.bits);
     case Kind::single_precision:
       return shortest_text(static_cast<float>(value.number));
-    case Kind::number:
+    default:
       break;
   }
   return shortest_text(value.number);
@@ -85,40 +167,116 @@ CAMBIUM_COLD std::string range_text(ParameterInfo const& info) {
   return text + ", " + (range.high == any_finite.high ? "inf)" : number_text(range.high) + "]");
 }
 
-CAMBIUM_COLD void check_values(char const* name, void const* object, ReadStruct read, std::string const& where) {
-  struct Check final : ParameterReader {
+/// Visits the fields of a struct. `own`: its path; null if keys start with its fields.
+inline void visit_fields(TypeInfo const& type, void const* object, ParameterPath const* own, ListElements lists,
+                         ValueVisitor& visitor) {
+  for (auto const& field : type.fields())
+    visit_values({own, field.name}, field, field.type(), field.in(object), lists, visitor);
+  if (own != nullptr) visitor.end(*own, type, object);
+}
+
+CAMBIUM_COLD void visit_values(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type,
+                               void const* object, ListElements lists, ValueVisitor& visitor) {
+  switch (type.kind) {
+    case TypeInfo::Kind::structure:
+      return visit_fields(type, object, &path, lists, visitor);
+    case TypeInfo::Kind::text:
+      return visitor.text(path, info, *static_cast<std::string const*>(object));
+    case TypeInfo::Kind::one_of: {
+      auto const& model = type.alternatives[type.index(object)]();
+      ParameterPath const inner{&path, model.name};
+      visitor.alternative(path, info, model.name);
+      if (model.kind == TypeInfo::Kind::structure) visit_fields(model, type.held(object), &inner, lists, visitor);
+      return;
+    }
+    case TypeInfo::Kind::optional:
+      if (auto const* const held = type.held(object)) visit_values(path, info, type.element(), held, lists, visitor);
+      return;
+    case TypeInfo::Kind::list: {
+      auto const& element = type.element();
+      if (lists == ListElements::one_default)
+        return visit_values(path.at(ParameterPath::any_element), info, element, element.usual(), lists, visitor);
+      auto const elements = type.elements(object);
+      for (std::size_t i = 0; i < elements.count; ++i)
+        visit_values(path.at(i), info, element, elements[i], lists, visitor);
+      return;
+    }
+    case TypeInfo::Kind::opaque:
+      return;
+    default:
+      visitor.value(path, info, PlainValue::at(object, type));
+  }
+}
+
+CAMBIUM_COLD void edit_values(TypeInfo const& type, void* object, std::string const& where, EditValue const& edit) {
+  switch (type.kind) {
+    case TypeInfo::Kind::structure:
+      for (auto const& field : type.fields()) edit_values(field.type(), field.in(object), where, edit);
+      return;
+    case TypeInfo::Kind::one_of:
+      return edit_values(type.alternatives[type.index(object)](), const_cast<void*>(type.held(object)), where, edit);
+    case TypeInfo::Kind::optional:
+      if (auto const* const held = type.held(object)) edit_values(type.element(), const_cast<void*>(held), where, edit);
+      return;
+    case TypeInfo::Kind::list:
+      return type.fill(object, type.elements(object).count, where, [&](std::size_t, void* element, void const*) {
+        edit_values(type.element(), element, where, edit);
+      });
+    case TypeInfo::Kind::text:
+    case TypeInfo::Kind::opaque:
+      return;
+    default:
+      edit(type, object);
+  }
+}
+
+CAMBIUM_COLD Range range_at(TypeInfo const& type, void const* object, double const* place) {
+  for (auto const& field : type.fields()) {
+    auto const& inner = field.type();
+    if (inner.kind == TypeInfo::Kind::number && field.in(object) == place) return field.range;
+    if (inner.kind != TypeInfo::Kind::structure) continue;
+    auto const range = range_at(inner, field.in(object), place);
+    if (range.low != any_finite.low || range.high != any_finite.high) return range;
+  }
+  return any_finite;
+}
+
+CAMBIUM_COLD void check_values(TypeInfo const& type, void const* object, char const* name, std::string const& where) {
+  struct Check final : ValueVisitor {
     std::string const* where = nullptr;
 
     [[nodiscard]] std::string place(ParameterPath const& path) const {
       return (where->empty() ? "" : *where + ": ") + path.text();
     }
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
-               ParameterValue const*) override {
+    void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) override {
       if (value.in(info.range)) return;
       throw ParameterError(
           place(path), "is " + with_unit(value_text(info, value), info.unit),
           (info.choices != nullptr ? "give one of " : "give a value in ") + with_unit(range_text(info), info.unit));
     }
-    void own_check(ParameterPath const& path, void const* checked,
-                   void (*check)(void const*, std::string const&)) override {
-      check(checked, place(path));
+    void end(ParameterPath const& path, TypeInfo const& type, void const* checked) override {
+      if (type.check != nullptr) type.check(checked, place(path));
     }
   } reader;
   reader.where = &where;
-  ParameterPath const root{nullptr, name};
-  read(object, nullptr, &root, ListElements::each, reader);
+  auto const* struct_type = &type;
+  if (type.kind == TypeInfo::Kind::one_of) {
+    struct_type = &type.alternatives[type.index(object)]();
+    object = type.held(object);
+  }
+  if (struct_type->kind != TypeInfo::Kind::structure) return;
+  ParameterPath const root{nullptr, name != nullptr ? name : struct_type->name};
+  visit_fields(*struct_type, object, &root, ListElements::each, reader);
 }
 
-CAMBIUM_COLD std::string parameters_table(void const* object, ReadStruct read) {
-  struct Table final : ParameterReader {
+CAMBIUM_COLD std::string parameters_table(TypeInfo const& type) {
+  struct Table final : ValueVisitor {
     std::string rows = "| name | default | unit | range | meaning |\n|---|---|---|---|---|\n";
 
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
-               ParameterValue const*) override {
+    void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) override {
       add(path, info, value_text(info, value), value.has_range() ? range_text(info) : "-");
     }
-    void text(ParameterPath const& path, ParameterInfo const& info, std::string_view value,
-              std::string_view const*) override {
+    void text(ParameterPath const& path, ParameterInfo const& info, std::string const& value) override {
       add(path, info, '"' + std::string(value) + '"', "-");
     }
     void alternative(ParameterPath const& path, ParameterInfo const& info, char const* name) override {
@@ -129,21 +287,19 @@ CAMBIUM_COLD std::string parameters_table(void const* object, ReadStruct read) {
               " | " + info.sentence + " |\n";
     }
   } table;
-  read(object, nullptr, nullptr, ListElements::one_default, table);
+  visit_fields(type, type.usual(), nullptr, ListElements::one_default, table);
   return std::move(table.rows);
 }
 
-CAMBIUM_COLD std::string parameters_line(char const* name, void const* object, ReadStruct read) {
-  struct Line final : ParameterReader {
+CAMBIUM_COLD std::string parameters_line(TypeInfo const& type, void const* object) {
+  struct Line final : ValueVisitor {
     std::string line;
     bool is_first = true;
 
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
-               ParameterValue const*) override {
+    void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) override {
       add(path, with_unit(value_text(info, value), info.unit));
     }
-    void text(ParameterPath const& path, ParameterInfo const&, std::string_view value,
-              std::string_view const*) override {
+    void text(ParameterPath const& path, ParameterInfo const&, std::string const& value) override {
       add(path, '"' + std::string(value) + '"');
     }
     void alternative(ParameterPath const& path, ParameterInfo const&, char const* name) override { add(path, name); }
@@ -152,13 +308,13 @@ CAMBIUM_COLD std::string parameters_line(char const* name, void const* object, R
       is_first = false;
     }
   } reader;
-  reader.line = std::string(name) + ":";
-  read(object, nullptr, nullptr, ListElements::each, reader);
+  reader.line = std::string(type.name) + ":";
+  visit_fields(type, object, nullptr, ListElements::each, reader);
   return std::move(reader.line);
 }
 
-CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object, ReadStruct read) {
-  struct Hash final : ParameterReader {
+CAMBIUM_COLD std::uint64_t parameters_hash(TypeInfo const& type, void const* object) {
+  struct Hash final : ValueVisitor {
     std::uint64_t hash = 0xcbf29ce484222325u;
 
     void add_bits(std::uint64_t bits) {
@@ -182,14 +338,12 @@ CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object,
       }
       add_text(info.name);
     }
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
-               ParameterValue const*) override {
+    void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) override {
       add_path(path, info);
       // + 0.0 turns -0 into 0
       add_bits(value.is_real() ? std::bit_cast<std::uint64_t>(value.number + 0.0) : value.bits);
     }
-    void text(ParameterPath const& path, ParameterInfo const& info, std::string_view text,
-              std::string_view const*) override {
+    void text(ParameterPath const& path, ParameterInfo const& info, std::string const& text) override {
       add_path(path, info);
       add_text(text);
     }
@@ -198,27 +352,95 @@ CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object,
       add_text(name);
     }
   } hash;
-  hash.add_text(name);
-  read(object, nullptr, nullptr, ListElements::each, hash);
+  hash.add_text(type.name);
+  visit_fields(type, object, nullptr, ListElements::each, hash);
   return hash.hash;
 }
 
-CAMBIUM_COLD bool parameters_equal(void const* a, void const* b, ReadStruct read) {
-  struct Equality final : ParameterReader {
-    bool holds = true;
+CAMBIUM_COLD bool are_equal(TypeInfo const& type, void const* a, void const* b, Equality equality) {
+  switch (type.kind) {
+    case TypeInfo::Kind::structure:
+      for (auto const& field : type.fields())
+        if (!are_equal(field.type(), field.in(a), field.in(b), equality)) return false;
+      return true;
+    case TypeInfo::Kind::text:
+      return *static_cast<std::string const*>(a) == *static_cast<std::string const*>(b);
+    case TypeInfo::Kind::one_of:
+      return type.index(a) == type.index(b) &&
+             are_equal(type.alternatives[type.index(a)](), type.held(a), type.held(b), equality);
+    case TypeInfo::Kind::optional: {
+      auto const *const left = type.held(a), *const right = type.held(b);
+      if (left == nullptr || right == nullptr) return left == right;
+      return are_equal(type.element(), left, right, equality);
+    }
+    case TypeInfo::Kind::list: {
+      auto const left = type.elements(a), right = type.elements(b);
+      bool same = left.count == right.count;
+      for (std::size_t i = 0; same && i < left.count; ++i)
+        same = are_equal(type.element(), left[i], right[i], equality);
+      return same;
+    }
+    case TypeInfo::Kind::opaque:
+      return equality == Equality::of_values;
+    default:
+      break;
+  }
+  if (equality == Equality::of_bits || !type.is_real()) return std::memcmp(a, b, type.size) == 0;
+  return PlainValue::at(a, type).number == PlainValue::at(b, type).number;
+}
 
-    void value(ParameterPath const&, ParameterInfo const&, ParameterValue const& value,
-               ParameterValue const* other) override {
-      holds = holds && value.number == other->number && value.bits == other->bits;
+CAMBIUM_COLD void set_number(TypeInfo const& type, void* object, std::string_view key, double number,
+                             std::string const& where) {
+  auto const place = (where.empty() ? "" : where + ": ") + std::string(key);
+  auto const parts = split(key, ".");
+  auto const* here = &type;
+  ParameterInfo const* info = nullptr;
+  std::vector<std::string> beside;
+  std::size_t found = 0;  // parts of the key
+  auto const held = [&] { return object = const_cast<void*>(here->held(object)); };
+  auto const refuse = [&] {
+    throw ParameterError(place, "there is no number of that key",
+                         found < parts.size() ? suggestion(parts[found], beside) : "name a number in it");
+  };
+  while (true) {
+    if (here->kind == TypeInfo::Kind::optional) {
+      if (held() == nullptr) refuse();
+      here = &here->element();
+    } else if (found == parts.size()) {
+      break;
+    } else if (here->kind == TypeInfo::Kind::one_of) {
+      auto const name = alternative_name(*here, here->index(object));
+      beside = {name};
+      if (name != parts[found]) refuse();
+      ++found;
+      auto const& model = here->alternatives[here->index(object)]();
+      held();
+      here = &model;
+    } else if (here->kind == TypeInfo::Kind::structure) {
+      auto const fields = here->fields();
+      auto const field =
+          std::find_if(fields.begin(), fields.end(), [&](auto const& f) { return f.name == parts[found]; });
+      beside.clear();
+      if (field == fields.end())
+        for (auto const& one : fields) beside.emplace_back(one.name);
+      if (field == fields.end()) refuse();
+      ++found;
+      info = &*field;
+      object = field->in(object);
+      here = &field->type();
+    } else {
+      beside.clear();
+      refuse();
     }
-    void text(ParameterPath const&, ParameterInfo const&, std::string_view text,
-              std::string_view const* other) override {
-      holds = holds && text == *other;
-    }
-    void other_length() override { holds = false; }
-  } equality;
-  read(a, b, nullptr, ListElements::each, equality);
-  return equality.holds;
+  }
+  if (!here->is_plain()) refuse();
+  if (!here->is_real()) throw ParameterError(place, "is no real number", "name another parameter");
+  auto value = PlainValue::at(object, *here);
+  value.number = number;
+  if (!value.in(info->range))
+    throw ParameterError(place, "is " + with_unit(number_text(number), info->unit),
+                         "give a value in " + with_unit(range_text(*info), info->unit));
+  value.store(object, *here);
 }
 
 }  // namespace cambium::detail

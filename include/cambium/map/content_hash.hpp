@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "cambium/core/hash.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::map {
@@ -15,10 +16,8 @@ namespace cambium::map {
 /// compiler's flags and the mathematical library. O(path segments) at first, then O(1).
 [[nodiscard]] inline std::uint64_t content_hash(Map const& map) {
   if (auto const known = map.known_content_hash().load(std::memory_order_relaxed); known != 0) return known;
-  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
-  auto const add = [&hash](std::uint64_t bits) {
-    for (int shift = 0; shift < 64; shift += 8) hash = (hash ^ (bits >> shift & 0xffu)) * 0x100000001b3u;
-  };
+  cambium::detail::Fnv1a<std::uint64_t> hash;
+  auto const add = [&hash](std::uint64_t bits) { hash.add_bytes(bits); };
   auto const add_number = [&](double number) {
     constexpr double off = 0.3719;  // else round numbers would lie where the last bit decides
     add(std::bit_cast<std::uint64_t>(std::floor(1e3 * number + off) + 0.0));
@@ -76,8 +75,8 @@ namespace cambium::map {
       add(index_of(priority.low));
     }
   for (auto const& light : map.lights()) add_text(light.name);
-  map.known_content_hash().store(hash, std::memory_order_relaxed);
-  return hash;
+  map.known_content_hash().store(hash.value(), std::memory_order_relaxed);
+  return hash.value();
 }
 
 }  // namespace cambium::map

@@ -111,22 +111,6 @@ template <class Driver>
     return static_cast<double*>(nullptr);
 }
 
-/// The range of the field of `object`, or of a struct in it, at `place`; every number if there is no such field.
-template <Described T>
-[[nodiscard]] Range range_at(T const& object, double const* place) {
-  Range range{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
-  for_each_parameter<T>([&](auto const& entry) {
-    auto const& field = object.*entry.field;
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>) {
-      if (&field == place) range = entry.range;
-    } else if constexpr (Described<std::remove_cvref_t<decltype(field)>>) {
-      auto const inner = range_at(field, place);
-      range = {std::max(range.low, inner.low), std::min(range.high, inner.high)};
-    }
-  });
-  return range;
-}
-
 /// Whether an agent goes a way of its own beside the lanes or across, as on foot.
 template <class World>
 [[nodiscard]] bool is_beside_lanes(World const& world, Slot slot) {
@@ -172,7 +156,7 @@ void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   auto* const desired = desired_speed_of(others);
   if (desired == nullptr) return;
   double const usual = *desired;
-  auto const range = range_at(others, desired);
+  auto const range = range_at(type_info<Others>(), &others, desired);
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
     bool const is_on_foot = is_beside_lanes(world, slot);

@@ -17,7 +17,6 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/random.hpp"
-#include "cambium/core/set_parameter.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/off_road.hpp"
 #include "cambium/geometry/shape.hpp"

@@ -18,8 +18,8 @@
 #include "cambium/scenario/detail/scenario_maps.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 
-/// Scenario sets as files: JSON to read and to exchange, or compact bytes for large sets, which one version of the
-/// program reads. A file names maps by their path and lanes as "road/section/lane"; behaviours and other
+/// Scenario sets as files: JSON to read and to exchange, or compact bytes for large sets, without the
+/// names of fields. A file names maps by their path and lanes as "road/section/lane"; behaviours and other
 /// models by the names of the alternatives that the program's `World` has.
 ///
 ///   {"format": 1, "scenarios": [
@@ -49,13 +49,11 @@ template <class WorldType>
 void complete(ScenarioSet<WorldType>& set, LaneTable const& lanes, std::filesystem::path const& folder,
               std::string const& where, std::function<void(ScenarioRecipe<WorldType>&)> const& adjust) {
   detail::MapFiles maps;
-  Scenario<WorldType> const usual{};
   for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
     auto& scenario = set.scenarios[i];
     auto const place = where + ": scenarios[" + std::to_string(i) + "]";
     scenario.map = maps.load(folder, scenario.map_file, place);
-    detail::exchange_lanes(&scenario, &usual, &detail::transfer_any<Scenario<WorldType>>, *scenario.map, lanes, true,
-                           place);
+    detail::exchange_lanes(type_info<Scenario<WorldType>>(), &scenario, *scenario.map, lanes, true, place);
     std::optional<WorldType> world;
     try {
       world.emplace(scenario.make_world());
@@ -73,13 +71,11 @@ void complete(ScenarioSet<WorldType>& set, LaneTable const& lanes, std::filesyst
       if (Collision{}(*world, world->slot_of(agent.id)))
         throw WorldError(place, "agent " + to_string(agent.id) + " overlaps a static object", "move one of them");
   }
-  ScenarioRecipe<WorldType> const usual_recipe{};
   for (std::size_t i = 0; i < set.recipes.size(); ++i) {
     auto& recipe = set.recipes[i];
     auto const place = where + ": recipes[" + std::to_string(i) + "]";
     auto const map = maps.load(folder, recipe.map_file, place);
-    detail::exchange_lanes(&recipe, &usual_recipe, &detail::transfer_any<ScenarioRecipe<WorldType>>, *map, lanes, true,
-                           place);
+    detail::exchange_lanes(type_info<ScenarioRecipe<WorldType>>(), &recipe, *map, lanes, true, place);
     if (adjust) adjust(recipe);
     auto drawn = draw(recipe, map, place);
     std::move(drawn.begin(), drawn.end(), std::back_inserter(set.scenarios));
@@ -90,7 +86,6 @@ void complete(ScenarioSet<WorldType>& set, LaneTable const& lanes, std::filesyst
 /// The set as its file holds it: with numbers of `lanes` as lanes.
 template <class WorldType>
 [[nodiscard]] ScenarioSet<WorldType> as_in_file(ScenarioSet<WorldType> set, LaneTable const& lanes) {
-  Scenario<WorldType> const usual{};
   if (!set.recipes.empty())
     throw ParameterError("scenario set", "has recipes that were not drawn", "`draw` gives their scenarios");
   set.format = ScenarioSet<WorldType>::latest_format;
@@ -101,7 +96,7 @@ template <class WorldType>
     for (auto const& agent : scenario.agents)
       if (agent.road)
         throw ParameterError(place, "an agent has a road of its own", "give it a route or a way: files hold no roads");
-    exchange_lanes(&scenario, &usual, &transfer_any<Scenario<WorldType>>, *scenario.map, lanes, false, place);
+    exchange_lanes(type_info<Scenario<WorldType>>(), &scenario, *scenario.map, lanes, false, place);
   }
   return set;
 }

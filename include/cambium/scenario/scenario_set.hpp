@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cambium/core/described.hpp"
+#include "cambium/core/hash.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/map/content_hash.hpp"
 #include "cambium/map/map.hpp"
@@ -47,15 +48,15 @@ struct ScenarioSet {
       scenario.title.clear();
       scenario.map_file.clear();
     }
-    auto hash = hash_parameters(plain);
+    detail::Fnv1a<std::uint64_t> hash(hash_parameters(plain));
     std::map<cambium::Map const*, std::uint64_t> known;
     for (auto const& scenario : scenarios) {
       if (!scenario.map) continue;
       auto const [at, is_new] = known.emplace(scenario.map.get(), 0);
       if (is_new) at->second = content_hash(*scenario.map);
-      hash = (hash ^ at->second) * 0x100000001b3u;
+      hash.add_word(at->second);
     }
-    return hash;
+    return hash.value();
   }
 };
 

@@ -298,10 +298,10 @@ void serialize(Archive& archive, cambium::MctsWorkspace<Domain, Options>& worksp
   } else if constexpr (Archive::is_saving::value) {
     std::optional<cambium::detail::ArchivedSearch<typename Workspace::Search>> kept;
     if (auto const* trees = workspace.kept(); trees != nullptr) kept = cambium::detail::archived_trees(*trees);
-    cambium::detail::FieldWriter(archive).write("kept", kept);
+    cambium::detail::archive_fields(archive, "kept", kept);
   } else {
     std::optional<cambium::detail::ArchivedSearch<typename Workspace::Search>> kept;
-    cambium::detail::FieldReader(archive).read("kept", kept);
+    cambium::detail::archive_fields(archive, "kept", kept);
     Workspace restored;
     if (kept)
       restored.restore_kept(cambium::detail::restored_trees(std::move(*kept), cambium::detail::scenes_of(archive)));

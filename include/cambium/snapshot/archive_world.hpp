@@ -294,22 +294,21 @@ inline void require_consistent(bool condition, char const* what) {
   return index_of(at.piece) < corridor.pieces.size() && at.segment < corridor.center.segments().size();
 }
 
-/// Whether every lane corridor that `value` names is one of the `count` of its road.
-template <class Value>
-[[nodiscard]] bool names_corridors_below(Value const& value, std::size_t count) {
-  bool all = true;
-  if constexpr (std::is_same_v<Value, CorridorId>) {
-    return !is_valid(value) || index_of(value) < count;
-  } else if constexpr (Described<Value>) {
-    for_each_parameter<Value>([&](auto const& p) { all = all && names_corridors_below(value.*p.field, count); });
-  } else if constexpr (Variant<Value>) {
-    with_alternative(value, [&](auto const& model, auto) { all = names_corridors_below(model, count); });
-  } else if constexpr (Optional<Value>) {
-    if (value) all = names_corridors_below(*value, count);
-  } else if constexpr (ParameterList<Value>) {
-    for (auto const& element : elements_of(value)) all = all && names_corridors_below(element, count);
-  }
-  return all;
+/// Whether every lane corridor that an object names is one of the `count` of its road.
+[[nodiscard]] inline bool names_corridors_below(TypeInfo const& type, void const* object, std::size_t count) {
+  struct Corridors final : ValueVisitor {
+    std::size_t count = 0;
+    bool are_there = true;
+
+    void value(ParameterPath const&, ParameterInfo const&, PlainValue const& value) override {
+      auto const corridor = static_cast<CorridorId>(value.bits);
+      if (value.kind == TypeInfo::Kind::corridor && is_valid(corridor))
+        are_there = are_there && index_of(corridor) < count;
+    }
+  } visitor;
+  visitor.count = count;
+  visit_values({nullptr, ""}, {}, type, object, ListElements::each, visitor);
+  return visitor.are_there;
 }
 
 /// Checks the record of an agent that behaves as `behavior` on `road` in a world at `time` [s], and numbers its place.
@@ -321,7 +320,7 @@ void place_on(map::RoadCorridor const& road, Behavior const& behavior, Record& r
   auto const& pieces = road.corridors[record.lane.corridor].pieces;
   record.lane.index = map::lane_coordinate(pieces[record.lane.piece], record.lane.s);
   require_consistent(record.memory.index() == behavior.index(), "an agent has another model's memory");
-  require_consistent(names_corridors_below(record.memory, road.corridors.size()),
+  require_consistent(names_corridors_below(type_info<decltype(record.memory)>(), &record.memory, road.corridors.size()),
                      "an agent remembers a lane that its road lacks");
 }
 
@@ -345,7 +344,8 @@ struct ArchivedScenes {
 template <class Archive>
 requires requires(Archive& archive, void* id) { archive.template get_helper<ArchivedScenes>(id); }
 [[nodiscard]] ArchivedScenes& scenes_of(Archive& archive) {
-  return archive.template get_helper<ArchivedScenes>(const_cast<char*>(&type_key<ArchivedScenes>));
+  static constexpr char key{};  // its address stands for them
+  return archive.template get_helper<ArchivedScenes>(const_cast<char*>(&key));
 }
 
 /// `known`: free corridors to be shared.
@@ -436,10 +436,11 @@ template <class Archive, class T>
 requires(cambium::detail::is_world<T>) void serialize(Archive& archive, T& world, unsigned) {
   using Parts = cambium::detail::ArchivedWorld<T>;
   if constexpr (Archive::is_saving::value) {
-    cambium::detail::FieldWriter(archive).write("world", cambium::detail::archived(world));
+    auto const parts = cambium::detail::archived(world);
+    cambium::detail::archive_fields(archive, "world", parts);
   } else {
     Parts parts;
-    cambium::detail::FieldReader(archive).read("world", parts);
+    cambium::detail::archive_fields(archive, "world", parts);
     world = cambium::detail::restored<T>(world.shared_map(), std::move(parts));
     if constexpr (requires { cambium::detail::scenes_of(archive); })
       cambium::detail::scenes_of(archive).scenes.push_back({world.shared_map(), world.roster().free_roads});

@@ -30,6 +30,7 @@
 #include <boost/archive/polymorphic_xml_oarchive.hpp>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/hash.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/version.hpp"
 #include "cambium/snapshot/snapshot.hpp"
@@ -255,19 +256,6 @@ CAMBIUM_COLD std::string build_tag() {
   auto const end = std::from_chars(text.data(), text.data() + text.size(), number, base);
   if (text.empty() || end.ec != std::errc{} || end.ptr != text.data() + text.size()) return std::nullopt;
   return number;
-}
-
-/// FNV-1a over words of 8 bytes, the lowest byte first; the last word is filled up by zeros. A change within one word
-/// always changes it.
-[[nodiscard]] inline std::uint64_t checksum_of(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325u ^ bytes.size();
-  for (std::size_t at = 0; at < bytes.size(); at += 8) {
-    std::array<unsigned char, 8> word{};
-    std::memcpy(word.data(), bytes.data() + at, std::min<std::size_t>(8, bytes.size() - at));
-    if constexpr (std::endian::native == std::endian::big) std::reverse(word.begin(), word.end());
-    hash = (hash ^ std::bit_cast<std::uint64_t>(word)) * 0x100000001b3u;
-  }
-  return hash;
 }
 
 inline constexpr char const* format_names[] = {"binary", "text", "xml"};

@@ -69,7 +69,7 @@ class JobProcess {
     auto const count = read(socket_, buffer, sizeof buffer);
     if (count > 0) {
       bytes_.append(buffer, static_cast<std::size_t>(count));
-      if (bytes_.size() < 8 || bytes_.size() < 8 + MessageReader(bytes_).number()) return std::nullopt;
+      if (bytes_.size() < 8 || bytes_.size() < 8 + number_of(bytes_)) return std::nullopt;
       is_busy_ = false;
       return std::exchange(bytes_, {}).substr(8);
     }
@@ -85,6 +85,18 @@ class JobProcess {
  private:
   using Clock = std::chrono::steady_clock;
 
+  /// A number as 8 bytes of this machine, and back.
+  [[nodiscard]] static std::string bytes_of(std::uint64_t number) {
+    std::string bytes(8, '\0');
+    std::memcpy(bytes.data(), &number, 8);
+    return bytes;
+  }
+  [[nodiscard]] static std::uint64_t number_of(std::string_view bytes) {
+    std::uint64_t number = 0;
+    std::memcpy(&number, bytes.data(), 8);
+    return number;
+  }
+
   [[nodiscard]] std::string failed(std::string error) {
     is_busy_ = false;
     JobOutcome outcome;
@@ -95,9 +107,7 @@ class JobProcess {
   void send_job() {
     begin_ = Clock::now();
     if (pid_ <= 0) fork_child();
-    std::string bytes;
-    append_number(bytes, job_, 8);
-    static_cast<void>(send_all(socket_, bytes));  // if it has died, `wait` finds that out
+    static_cast<void>(send_all(socket_, bytes_of(job_)));  // if it has died, `wait` finds that out
   }
 
   void fork_child() {
@@ -142,10 +152,11 @@ class JobProcess {
         if (count <= 0) _exit(0);
         at += static_cast<std::size_t>(count);
       }
-      auto const job = MessageReader({number, sizeof number}).number();
+      auto const job = number_of({number, sizeof number});
       std::string bytes;
       try {
-        append_text(bytes, outcome_bytes(run_(static_cast<std::size_t>(job))));
+        auto const outcome = outcome_bytes(run_(static_cast<std::size_t>(job)));
+        bytes = bytes_of(outcome.size()) + outcome;
       } catch (...) {
         std::fflush(nullptr);
         _exit(70);

@@ -10,7 +10,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/json.hpp"
-#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/core/type_info.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/map/map.hpp"
 
@@ -57,8 +57,8 @@ struct StartingBody {
 };
 
 /// Replaces the lanes of a struct: those of `map` by numbers of `table`, or the other way.
-void exchange_lanes(void* object, void const* usual, TransferStruct transfer, Map const& map, LaneTable const& table,
-                    bool to_map, std::string const& where);
+void exchange_lanes(TypeInfo const& type, void* object, Map const& map, LaneTable const& table, bool to_map,
+                    std::string const& where);
 
 /// Throws `WorldError` if two bodies overlap.
 void check_overlaps(std::vector<StartingBody> const& bodies, std::string const& where);

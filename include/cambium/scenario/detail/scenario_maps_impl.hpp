@@ -15,8 +15,9 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/json.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
-#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/core/type_info.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/map/map.hpp"
@@ -24,38 +25,6 @@
 #include "cambium/scenario/detail/scenario_maps.hpp"
 
 namespace cambium::detail {
-
-/// Replaces lanes; leaves all else as it is.
-class LaneExchange final : public ParameterTransfer {
- public:
-  LaneExchange(Map const& map, LaneTable const& table, bool to_map, std::string const& where)
-      : map_(map), table_(table), to_map_(to_map), where_(where) {}
-
-  [[nodiscard]] bool field(char const*) override { return true; }
-  void element(std::size_t) override {}
-  void end() override {}
-  void begin_struct() override {}
-  void end_struct() override {}
-  [[nodiscard]] std::size_t list(std::size_t length, std::size_t, bool) override { return length; }
-  [[nodiscard]] std::size_t alternative(std::span<char const* const>, std::size_t now, std::size_t) override {
-    return now;
-  }
-  [[nodiscard]] bool presence(bool now) override { return now; }
-  [[nodiscard]] ParameterValue value(ParameterInfo const&, ParameterValue const& now, bool, ParameterValue const&,
-                                     ParameterValue const&) override {
-    auto const lane = now.as<LaneId>();
-    if (now.kind != ParameterValue::Kind::lane || !is_valid(lane)) return now;
-    return ParameterValue(to_map_ ? table_.lane_in(map_, lane, where_) : table_.number_of(map_, lane));
-  }
-  void text(std::string&, bool) override {}
-  [[nodiscard]] std::string where() const override { return where_; }
-
- private:
-  Map const& map_;
-  LaneTable const& table_;
-  bool to_map_;
-  std::string const& where_;
-};
 
 CAMBIUM_COLD LaneId LaneTable::lane(std::string_view name, std::string const&) const {
   auto const known = numbers_.find(name);
@@ -107,10 +76,13 @@ CAMBIUM_COLD LaneId LaneTable::number_of(Map const& map, LaneId id) const {
       {});
 }
 
-CAMBIUM_COLD void exchange_lanes(void* object, void const* usual, TransferStruct transfer, Map const& map,
-                                 LaneTable const& table, bool to_map, std::string const& where) {
-  LaneExchange exchange(map, table, to_map, where);
-  transfer(object, usual, exchange);
+CAMBIUM_COLD void exchange_lanes(TypeInfo const& type, void* object, Map const& map, LaneTable const& table,
+                                 bool to_map, std::string const& where) {
+  edit_values(type, object, where, [&](TypeInfo const& plain, void* value) {
+    if (plain.kind != TypeInfo::Kind::lane) return;
+    auto& lane = *static_cast<LaneId*>(value);
+    if (is_valid(lane)) lane = to_map ? table.lane_in(map, lane, where) : table.number_of(map, lane);
+  });
 }
 
 CAMBIUM_COLD std::shared_ptr<Map const> MapFiles::load(std::filesystem::path const& folder, std::string const& name,

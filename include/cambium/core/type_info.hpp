@@ -1,0 +1,441 @@
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cambium/core/described.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/core/one_of.hpp"
+
+namespace cambium {
+
+struct FieldInfo;
+
+/// What a type consists of, as data. Code that reads, writes, compares, checks or prints described structs is written
+/// for this table, so it is compiled once and not once for each struct. `type_info<T>()` gives the table of a described
+/// struct or of anything that can be a field of one.
+///
+///     structure   fields                          a described struct
+///     one_of      alternatives, index, held       a OneOf or variant
+///     optional    element, held
+///     list        element, elements, fill         an array, a vector, a pointer to one, or what is made from a span
+///     text                                        a std::string
+///     opaque                                      an alternative without description: no file can hold it
+///     others                                      plain values: see `PlainValue`
+struct TypeInfo {
+  enum class Kind : std::uint8_t {
+    structure,
+    one_of,
+    optional,
+    list,
+    text,
+    opaque,
+    boolean,
+    id,
+    lane,      ///< an id that files may write by road, lane section and number
+    corridor,  ///< an id that only the agent's road knows
+    choice,
+    signed_integer,
+    unsigned_integer,
+    single_precision,
+    number
+  };
+  using Get = TypeInfo const& (*)();
+  struct Elements {
+    void const* first;
+    std::size_t count, size;  ///< number; of one [bytes]
+
+    [[nodiscard]] void const* operator[](std::size_t i) const {
+      return static_cast<std::byte const*>(first) + i * size;
+    }
+  };
+  /// Called for each element that a list gets: its number, the element, and the one before it, or null.
+  using Fill = std::function<void(std::size_t number, void* element, void const* before)>;
+  static constexpr std::size_t any_length = std::numeric_limits<std::size_t>::max();
+
+  Kind kind;
+  std::size_t size;                                      ///< [bytes]
+  bool is_signed = false;                                ///< of an integer, or of the integer that an enum is stored as
+  bool is_trivial = false;                               ///< copies need no memory besides
+  char const* name = nullptr;                            ///< of a structure, or of an opaque type
+  void const* (*usual)() = nullptr;                      ///< the default value; null for types without one
+  void (*assign)(void* to, void const* from) = nullptr;  ///< null for types that cannot be assigned
+
+  // Of a structure.
+  std::span<FieldInfo const> (*fields)() = nullptr;
+  unsigned version = 0;                                                   ///< its member `version`, else 0
+  void (*upgrade)(void* object, unsigned from) = nullptr;                 ///< its member `upgrade`; may be null
+  void (*check)(void const* object, std::string const& where) = nullptr;  ///< its member `check`; may be null
+  void* (*copy)(void const* object) = nullptr;                            ///< on the heap; `destroy` deletes it
+  void (*destroy)(void* object) = nullptr;
+
+  // Of a OneOf or an optional.
+  std::span<Get const> alternatives = {};              ///< of a OneOf
+  std::size_t (*index)(void const* object) = nullptr;  ///< of the alternative that it holds
+  void const* (*held)(void const* object) = nullptr;   ///< what it holds; null for nothing
+  void (*select)(void* object,
+                 std::size_t alternative) = nullptr;  ///< makes it hold a default value; an optional: 1 or 0
+
+  // Of a list or an optional.
+  Get element = nullptr;
+  std::size_t least = 0, most = any_length;  ///< lengths of a list
+  bool is_shared = false;                    ///< copies share the elements
+  Elements (*elements)(void const* object) = nullptr;
+  /// Gives a list `length` elements, one after the other; what it has already, is kept and handed over. `where`: for
+  /// messages of a type that checks its elements.
+  void (*fill)(void* object, std::size_t length, std::string const& where, Fill const& fill) = nullptr;
+
+  /// Whether it is a number, bool, enum or id.
+  [[nodiscard]] constexpr bool is_plain() const { return kind >= Kind::boolean; }
+  [[nodiscard]] constexpr bool is_real() const { return kind >= Kind::single_precision; }
+  /// Whether it is an integer, an enum or an id without a sign, of four bytes or more.
+  [[nodiscard]] constexpr bool is_long_unsigned() const { return is_plain() && !is_real() && !is_signed && size >= 4; }
+  /// Whether a file can hold it as an alternative.
+  [[nodiscard]] constexpr bool is_storable() const { return kind == Kind::structure && usual != nullptr; }
+};
+
+/// A field of a described struct.
+struct FieldInfo : ParameterInfo {
+  TypeInfo::Get type;
+  void* (*reach)(std::byte const* member, void* object);
+  std::array<std::byte, 2 * sizeof(void*)> member;  ///< the pointer to member
+
+  [[nodiscard]] void* in(void* object) const { return reach(member.data(), object); }
+  [[nodiscard]] void const* in(void const* object) const { return reach(member.data(), const_cast<void*>(object)); }
+};
+
+/// The table of a type.
+template <class T>
+[[nodiscard]] TypeInfo const& type_info();
+
+namespace detail {
+/// The name of an alternative of a `OneOf` in files: its own, or "name/2" for the second one of that name; empty if no
+/// file can hold it.
+[[nodiscard]] std::string alternative_name(TypeInfo const& one_of, std::size_t index);
+/// The names of all that a file can hold.
+[[nodiscard]] std::vector<std::string> alternative_names(TypeInfo const& one_of);
+}  // namespace detail
+
+namespace detail {
+
+template <class F>
+concept HasElements = requires(F const list) {
+  std::span(list.data(), list.size());
+};
+template <class F>
+concept PointsToElements = requires(F const list) {
+  static_cast<bool>(list);
+  std::span(list->data(), list->size());
+};
+/// A field that is a list.
+template <class F>
+concept ParameterList = !std::is_same_v<F, std::string> && (HasElements<F> || PointsToElements<F>);
+
+/// Its elements; none where a pointer is null.
+template <ParameterList F>
+[[nodiscard]] constexpr auto elements_of(F const& list) {
+  if constexpr (HasElements<F>) {
+    return std::span(list.data(), list.size());
+  } else {
+    using Elements = decltype(std::span(list->data(), list->size()));
+    return list ? Elements(list->data(), list->size()) : Elements();
+  }
+}
+template <ParameterList F>
+using ElementOf = std::remove_cv_t<typename decltype(elements_of(std::declval<F const&>()))::element_type>;
+
+template <class T>
+void take_optional(std::optional<T> const&);
+/// Whether `F` is a `std::optional` or derived from one.
+template <class F>
+concept Optional = requires(F const& any) {
+  detail::take_optional(any);
+};
+
+template <class T>
+[[nodiscard]] constexpr char const* struct_name() {
+  if constexpr (requires { T::name; }) {
+    return T::name;
+  } else {
+    return "parameters";
+  }
+}
+
+/// Calls `f` with an integer of this size [bytes] and sign.
+template <class F>
+auto with_integer(std::size_t size, bool is_signed, F const& f) {
+  switch (2 * size + is_signed) {
+    case 2:
+      return f(std::uint8_t{});
+    case 3:
+      return f(std::int8_t{});
+    case 4:
+      return f(std::uint16_t{});
+    case 5:
+      return f(std::int16_t{});
+    case 8:
+      return f(std::uint32_t{});
+    case 9:
+      return f(std::int32_t{});
+    case 16:
+      return f(std::uint64_t{});
+    default:
+      return f(std::int64_t{});
+  }
+}
+
+/// The table of a field, of an element of a list, or of an optional value.
+template <class T>
+[[nodiscard]] constexpr TypeInfo::Get type_of_field() {
+  static_assert(Described<T> || std::is_same_v<T, std::string> || Variant<T> || Optional<T> || ParameterList<T> ||
+                    std::is_arithmetic_v<T> || std::is_enum_v<T>,
+                "cambium::parameter: a field must be a number, a bool, an enum, an id, a text, another described "
+                "struct, a OneOf of these, an optional, or a list");
+  return &type_info<T>;
+}
+
+template <class T>
+[[nodiscard]] constexpr TypeInfo::Kind plain_kind() {
+  using Kind = TypeInfo::Kind;
+  if constexpr (std::is_same_v<T, bool>) return Kind::boolean;
+  if constexpr (std::is_same_v<T, LaneId>) return Kind::lane;
+  if constexpr (std::is_same_v<T, CorridorId>) return Kind::corridor;
+  if constexpr (StrongId<T>) return Kind::id;
+  if constexpr (std::is_enum_v<T>) return Kind::choice;
+  if constexpr (std::is_same_v<T, float>) return Kind::single_precision;
+  if constexpr (std::is_floating_point_v<T>) return Kind::number;
+  return std::is_signed_v<T> ? Kind::signed_integer : Kind::unsigned_integer;
+}
+
+/// Number of a struct's fields.
+template <Described T>
+[[nodiscard]] constexpr std::size_t field_count() {
+  std::size_t count = 0;
+  for_each_parameter<T>([&count](auto const&) { ++count; });
+  return count;
+}
+
+template <class T, class Member>
+void* reach_member(std::byte const* bytes, void* object) {
+  Member member;
+  std::memcpy(&member, bytes, sizeof member);
+  return &(static_cast<T*>(object)->*member);
+}
+
+template <Described T>
+[[nodiscard]] std::span<FieldInfo const> fields_of() {
+  static auto const fields = [] {
+    std::array<FieldInfo, field_count<T>()> all;
+    auto next = all.begin();
+    for_each_parameter<T>([&]<class Owner, class Field>(Parameter<Owner, Field> const& parameter) {
+      using Member = Field Owner::*;
+      static_assert(sizeof(Member) <= sizeof(next->member));
+      static_cast<ParameterInfo&>(*next) = parameter;
+      next->type = type_of_field<Field>();
+      next->reach = &reach_member<T, Member>;
+      std::memcpy(next->member.data(), &parameter.field, sizeof(Member));
+      ++next;
+    });
+    return all;
+  }();
+  return fields;
+}
+
+template <class T>
+concept HasUpgrade = requires(T& object) {
+  object.upgrade(0u);
+};
+template <class T>
+concept HasCheck = requires(T const& object) {
+  object.check(std::string());
+};
+
+template <Described T>
+void describe_structure(TypeInfo& info) {
+  info.name = struct_name<T>();
+  info.fields = &fields_of<T>;
+  if constexpr (requires { typename std::integral_constant<unsigned, T::version>; }) info.version = T::version;
+  if constexpr (HasUpgrade<T>)
+    info.upgrade = [](void* object, unsigned from) { static_cast<T*>(object)->upgrade(from); };
+  if constexpr (HasCheck<T>)
+    info.check = [](void const* object, std::string const& where) { static_cast<T const*>(object)->check(where); };
+  if constexpr (std::is_copy_constructible_v<T>) {
+    info.copy = [](void const* object) -> void* { return new T(*static_cast<T const*>(object)); };
+    info.destroy = [](void* object) { delete static_cast<T*>(object); };
+  }
+}
+
+template <class... Models, std::size_t... i>
+[[nodiscard]] void const* held_in(std::variant<Models...> const& value, std::index_sequence<i...>) {
+  void const* held = nullptr;
+  ((value.index() == i ? static_cast<void>(held = std::get_if<i>(&value)) : void()), ...);
+  return held;
+}
+template <class Model, std::size_t i, class Variant>
+void select_if(Variant& value, std::size_t alternative) {
+  if constexpr (std::is_default_constructible_v<Model>)
+    if (i == alternative) value.template emplace<i>();
+}
+template <class... Models, std::size_t... i>
+void select_in(std::variant<Models...>& value, std::size_t alternative, std::index_sequence<i...>) {
+  (select_if<Models, i>(value, alternative), ...);
+}
+
+/// `T` is a OneOf, or another variant of these models.
+template <class T, class... Models>
+void describe_one_of(TypeInfo& info, std::variant<Models...> const*) {
+  using Variant = std::variant<Models...>;
+  static constexpr TypeInfo::Get alternatives[] = {&type_info<Models>...};
+  info.alternatives = alternatives;
+  info.index = [](void const* object) { return static_cast<Variant const*>(static_cast<T const*>(object))->index(); };
+  info.held = [](void const* object) {
+    return held_in(*static_cast<T const*>(object), std::index_sequence_for<Models...>{});
+  };
+  info.select = [](void* object, std::size_t alternative) {
+    select_in<Models...>(*static_cast<T*>(object), alternative, std::index_sequence_for<Models...>{});
+  };
+}
+
+template <Optional T>
+void describe_optional(TypeInfo& info) {
+  info.element = type_of_field<typename T::value_type>();
+  info.held = [](void const* object) -> void const* {
+    auto const& value = *static_cast<T const*>(object);
+    return value ? &*value : nullptr;
+  };
+  info.select = [](void* object, std::size_t alternative) {
+    auto& value = *static_cast<T*>(object);
+    if (alternative == 0)
+      value.reset();
+    else if (!value)
+      value.emplace();
+  };
+}
+
+template <class T>
+concept GrowingList = requires(T& list) {
+  list.push_back(list.data()[0]);
+  list.pop_back();
+};
+
+template <ParameterList T>
+void fill_list(T& list, std::size_t length, std::string const& where, TypeInfo::Fill const& fill) {
+  using Element = ElementOf<T>;
+  if constexpr (GrowingList<T>) {
+    while (list.size() > length) list.pop_back();
+    for (std::size_t i = 0; i < length; ++i) {
+      if (i == list.size()) list.push_back(Element{});
+      fill(i, &list.data()[i], i > 0 ? &list.data()[i - 1] : nullptr);
+    }
+  } else if constexpr (PointsToElements<T> || std::is_constructible_v<T, std::span<Element const>, std::string>) {
+    auto const elements = elements_of(list);
+    std::vector<Element> grown(elements.begin(), elements.end());
+    fill_list(grown, length, where, fill);
+    if constexpr (PointsToElements<T>)
+      list = std::make_shared<std::vector<Element> const>(std::move(grown));
+    else
+      list = grown.empty() ? T{} : T(std::span<Element const>(grown), where);
+  } else {
+    for (std::size_t i = 0; i < length; ++i) fill(i, &list.data()[i], i > 0 ? &list.data()[i - 1] : nullptr);
+  }
+}
+
+template <ParameterList T>
+void describe_list(TypeInfo& info) {
+  using Element = ElementOf<T>;
+  info.element = type_of_field<Element>();
+  if constexpr (requires { T::static_capacity; }) {
+    info.most = T::static_capacity;
+  } else if constexpr (requires { std::tuple_size<T>::value; }) {
+    info.least = info.most = std::tuple_size_v<T>;
+  }
+  info.is_shared = PointsToElements<T>;
+  info.elements = [](void const* object) -> TypeInfo::Elements {
+    auto const elements = elements_of(*static_cast<T const*>(object));
+    return {elements.data(), elements.size(), sizeof(Element)};
+  };
+  info.fill = [](void* object, std::size_t length, std::string const& where, TypeInfo::Fill const& fill) {
+    fill_list(*static_cast<T*>(object), length, where, fill);
+  };
+}
+
+template <class T>
+[[nodiscard]] TypeInfo make_type_info() {
+  using Kind = TypeInfo::Kind;
+  TypeInfo info{Kind::opaque, sizeof(T)};
+  info.is_trivial = std::is_trivially_copyable_v<T>;
+  if constexpr (std::is_default_constructible_v<T>)
+    info.usual = []() -> void const* {
+      static T const usual{};
+      return &usual;
+    };
+  if constexpr (std::is_copy_assignable_v<T>)
+    info.assign = [](void* to, void const* from) { *static_cast<T*>(to) = *static_cast<T const*>(from); };
+  if constexpr (Described<T>) {
+    info.kind = Kind::structure;
+    describe_structure<T>(info);
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    info.kind = Kind::text;
+  } else if constexpr (Variant<T>) {
+    info.kind = Kind::one_of;
+    describe_one_of<T>(info, static_cast<T const*>(nullptr));
+  } else if constexpr (Optional<T>) {
+    info.kind = Kind::optional;
+    describe_optional<T>(info);
+  } else if constexpr (ParameterList<T>) {
+    info.kind = Kind::list;
+    describe_list<T>(info);
+  } else if constexpr (std::is_class_v<T>) {
+    info.name = struct_name<T>();
+  } else {
+    info.kind = plain_kind<T>();
+    info.is_signed = std::is_signed_v<T>;
+    if constexpr (std::is_enum_v<T>) info.is_signed = std::is_signed_v<std::underlying_type_t<T>>;
+  }
+  return info;
+}
+
+}  // namespace detail
+
+template <class T>
+[[nodiscard]] TypeInfo const& type_info() {
+  static TypeInfo const info = detail::make_type_info<T>();
+  return info;
+}
+
+/// A number, bool, enum or id of any type.
+struct PlainValue {
+  TypeInfo::Kind kind;
+  double number;       ///< compared with the range
+  std::uint64_t bits;  ///< the value of an integer, a choice or an id modulo 2^64; else 0
+
+  /// The value of a plain type at `object`.
+  [[nodiscard]] static PlainValue at(void const* object, TypeInfo const& type);
+  /// The lowest and the highest value of a plain type.
+  [[nodiscard]] static PlainValue lowest(TypeInfo const& type);
+  [[nodiscard]] static PlainValue highest(TypeInfo const& type);
+  /// Writes it to an object of the type that it was made for.
+  void store(void* object, TypeInfo const& type) const;
+
+  [[nodiscard]] bool is_id() const { return kind >= TypeInfo::Kind::id && kind <= TypeInfo::Kind::corridor; }
+  [[nodiscard]] bool is_real() const { return kind >= TypeInfo::Kind::single_precision; }
+  [[nodiscard]] bool has_range() const { return kind != TypeInfo::Kind::boolean && !is_id(); }
+  [[nodiscard]] bool in(Range range) const {
+    return !has_range() || (number >= range.low && number <= range.high);  // false for NaN
+  }
+};
+
+}  // namespace cambium
