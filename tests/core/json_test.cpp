@@ -49,6 +49,21 @@ struct Turn {
 };
 struct Secret {};  // not described
 
+struct Book {
+  std::array<double, 500> pages{};
+
+  static constexpr char const* name = "book";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("pages", &Book::pages, "-", any_finite, "what stands there"));
+  }
+};
+struct Shelf {
+  std::vector<Book> books{};
+
+  static constexpr char const* name = "shelf";
+  static constexpr auto parameters() { return parameter_list(parameter("books", &Shelf::books, "-", {}, "in order")); }
+};
+
 struct Everything {
   double number = 1.5;
   float single = 0.1f;
@@ -259,6 +274,24 @@ TEST_CASE("bytes of another kind, cut short or changed are refused") {
     for (std::size_t k = 0; k < 1 + random(3); ++k) changed[random(changed.size())] = static_cast<char>(random(256));
     static_cast<void>(refused(detail::sealed(changed)));
   }
+}
+
+TEST_CASE("a list whose elements repeat may be long, but not endless") {
+  auto const bytes = to_binary(Shelf{{{}, {}}});
+  auto const content = bytes.substr(24);
+  constexpr std::size_t length_at = 3;  // behind number and names of the fields
+  REQUIRE(content[length_at] == 2);
+  REQUIRE(content.back() == 0);  // the second book differs in nothing
+  auto const with = [&](std::uint64_t books) {
+    auto longer = content.substr(0, length_at) + '\xff';
+    for (int i = 0; i < 8; ++i) longer += static_cast<char>(books >> (8 * i) & 0xffu);
+    return detail::sealed(longer + content.substr(length_at + 1) + std::string(books - 2, '\0'));
+  };
+  CHECK(from_binary<Shelf>(with(1000)).books.size() == 1000);
+  CHECK_THROWS_WITH_AS(static_cast<void>(from_binary<Shelf>(with(1'000'000), "f.bin")),
+                       "f.bin: expands to far more memory than a file of its size should; take another copy; if this "
+                       "one is sound, store lists that repeat only once",
+                       ParameterError);
 }
 
 TEST_CASE("writing leaves the struct alone, even one in memory that nobody may write") {

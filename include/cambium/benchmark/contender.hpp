@@ -12,6 +12,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -206,18 +207,7 @@ class RunJudge {
   RunJudge(World& world, Slot ego) : ego_(ego) { observe(world, 0.0); }
 
   void observe(World& world, double dt) {
-    gap_.observe(world, ego_, dt);
-    collision_time_.observe(world, ego_, dt);
-    encroachment_.observe(world, ego_, dt);
-    required_.observe(world, ego_, dt);
-    speed_.observe(world, ego_, dt);
-    progress_.observe(world, ego_, dt);
-    braking_.observe(world, ego_, dt);
-    hard_brakings_.observe(world, ego_, dt);
-    rss_.observe(world, ego_, dt);
-    score_.observe(world, ego_, dt);
-    jerk_.observe(world, ego_, dt);
-    lateral_.observe(world, ego_, dt);
+    std::apply([&](auto&... metric) { (metric.recorder.observe(world, ego_, dt), ...); }, metrics_);
     result_.off_road = result_.off_road || OffRoad{}(world, ego_);
     result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
     if (auto const contact = Collision{}.contact(world, ego_)) {
@@ -236,18 +226,8 @@ class RunJudge {
   [[nodiscard]] RunResult finished(World const& world) {
     result_.steps = static_cast<std::int64_t>(world.frame().step);
     result_.duration_s = world.time();
-    result_.progress_m = progress_.value();
-    result_.mean_speed = std::max(0.0, speed_.value());
-    result_.post_encroachment_time = encroachment_.value();
-    result_.least_gap = gap_.value();
-    result_.least_time_to_collision = collision_time_.value();
-    result_.required_deceleration = std::max(0.0, required_.value());
-    result_.hardest_braking = std::max(0.0, -braking_.value());
-    result_.largest_jerk = std::max(0.0, jerk_.value());
-    result_.largest_lateral_acceleration = std::max(0.0, lateral_.value());
-    result_.hard_brakings = static_cast<std::int64_t>(hard_brakings_.value());
-    result_.rss_compliance = rss_.value();
-    result_.closed_loop_score = result_.success ? score_.value() : 0.0;  // else it made no progress in nuPlan's sense
+    std::apply([&](auto const&... metric) { (metric.write(result_), ...); }, metrics_);
+    if (!result_.success) result_.closed_loop_score = 0.0;  // it made no progress in nuPlan's sense
     return result_;
   }
 
@@ -257,25 +237,50 @@ class RunJudge {
       return world.frame().agents[slot].state.speed;
     }
   };
+  struct Braking {
+    [[nodiscard]] double operator()(World const& world, Slot slot) const { return -Acceleration{}(world, slot); }
+  };
+  // Infinite where nobody is ahead.
+  struct GapAhead : Gap {
+    GapAhead() : Gap{std::numeric_limits<double>::infinity()} {}
+  };
+  struct CollisionTime : TimeToCollision {
+    CollisionTime() : TimeToCollision{std::numeric_limits<double>::infinity()} {}
+  };
+  /// What a recorder says goes into a field of the result.
+  template <auto field, class Recorder>
+  struct Metric {
+    Recorder recorder{};
+
+    void write(RunResult& result) const {
+      result.*field = static_cast<std::remove_reference_t<decltype(result.*field)>>(recorder.value());
+    }
+  };
+  /// The same, but at least 0.
+  template <auto field, class Recorder>
+  struct NonNegative : Metric<field, Recorder> {
+    void write(RunResult& result) const {
+      Metric<field, Recorder>::write(result);
+      result.*field = std::max(0.0, result.*field);
+    }
+  };
+  using R = RunResult;
+  using Metrics =
+      std::tuple<Metric<&R::progress_m, Integral<Progress>>, NonNegative<&R::mean_speed, MeanOf<Speed>>,
+                 Metric<&R::least_gap, Least<GapAhead>>, Metric<&R::least_time_to_collision, Least<CollisionTime>>,
+                 Metric<&R::post_encroachment_time, PostEncroachmentTime>,
+                 NonNegative<&R::required_deceleration, Most<RequiredDeceleration>>,
+                 NonNegative<&R::hardest_braking, Most<Braking>>, NonNegative<&R::largest_jerk, Most<SizeOf<Jerk>>>,
+                 NonNegative<&R::largest_lateral_acceleration, Most<SizeOf<LateralAcceleration>>>,
+                 Metric<&R::hard_brakings, Times<HardBraking>>, Metric<&R::rss_compliance, RssCompliance>,
+                 Metric<&R::closed_loop_score, ClosedLoopScore>>;
 
   [[nodiscard]] AgentId id(World const& world) const { return world.roster().agents[ego_].id; }
 
   Slot ego_;
   RunResult result_;
   bool others_collide_ = false;
-  PostEncroachmentTime encroachment_;
-  static constexpr double infinite = std::numeric_limits<double>::infinity();
-  Least<Gap> gap_{Gap{infinite}};  // infinite where nobody is ahead
-  Least<TimeToCollision> collision_time_{TimeToCollision{infinite}};
-  Most<RequiredDeceleration> required_;
-  MeanOf<Speed> speed_;
-  Integral<Progress> progress_;
-  Least<Acceleration> braking_;
-  Times<HardBraking> hard_brakings_;
-  Most<SizeOf<Jerk>> jerk_;
-  Most<SizeOf<LateralAcceleration>> lateral_;
-  RssCompliance rss_;
-  ClosedLoopScore score_;
+  Metrics metrics_{};
 };
 
 /// Why a run cannot go on after a step with a problem: a behaviour under test, which drives `own` (the ego first), has

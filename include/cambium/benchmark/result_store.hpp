@@ -121,10 +121,6 @@ class ResultStore {
   ResultStore(std::filesystem::path const& file, Database db);
 
   [[nodiscard]] static Database open(std::string const& name, int flags);
-  /// The name of a file that nobody changes: without that, one cannot read in a folder that one may not write to.
-  [[nodiscard]] static std::string immutable(std::string const& file);
-  /// Whether the database has our tables.
-  [[nodiscard]] static bool is_ours(sqlite3* db);
 
   [[noreturn]] void fail(std::string const& what, std::string const& remedy) const;
   void execute(std::string const& sql);
@@ -136,22 +132,6 @@ class ResultStore {
   void add_missing_column(std::string const& table, std::string const& column);
   [[nodiscard]] std::int64_t last_run();
   void step(sqlite3_stmt* statement);
-
-  static void bind(sqlite3_stmt* s, int at, std::string const& value);
-  static void bind(sqlite3_stmt* s, int at, std::int64_t value);
-  static int bind_key(sqlite3_stmt* s, ResultKey const& key);
-
-  template <class T>
-  [[nodiscard]] static int count();
-  [[nodiscard]] static std::string marks(int number);
-  template <class T>
-  [[nodiscard]] static std::string columns(bool with_types);
-  template <class T>
-  static void bind_fields(sqlite3_stmt* s, int& at, T const& object);
-  template <class T>
-  static void read_fields(sqlite3_stmt* s, int& at, T& object);
-  [[nodiscard]] static std::string text(sqlite3_stmt* s, int at);
-  [[nodiscard]] static std::uint64_t hash_of(std::string const& text);
 
   std::string file_;
   Database db_;

@@ -9,21 +9,111 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/benchmark/run_result.hpp"
 #include "cambium/core/error.hpp"
-#include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/core/parameters.hpp"
+#include "cambium/core/type_info.hpp"
 
 namespace cambium {
 
 namespace detail {
 
 inline constexpr char const* key_columns = "set_hash, scenario, behavior, parameters_hash, version, ";
+
+/// URI that opens the file as immutable, for read-only folders.
+[[nodiscard]] inline std::string immutable(std::string const& file) {
+  std::string uri = "file:";
+  for (char const c : file)
+    if (c == '?' || c == '#' || c == '%')
+      uri += c == '?' ? "%3f" : c == '#' ? "%23" : "%25";
+    else
+      uri += c;
+  return uri + "?immutable=1";
+}
+
+/// Whether the database has our tables.
+[[nodiscard]] inline bool is_ours(sqlite3* db) {
+  sqlite3_stmt* query = nullptr;
+  bool const is_ours = sqlite3_prepare_v2(db, "SELECT 1 FROM runs, sets, behaviors, results, times LIMIT 0", -1, &query,
+                                          nullptr) == SQLITE_OK;
+  sqlite3_finalize(query);
+  return is_ours;
+}
+
+inline void bind(sqlite3_stmt* s, int at, std::string const& value) {
+  sqlite3_bind_text(s, at, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
+}
+
+inline void bind(sqlite3_stmt* s, int at, std::int64_t value) { sqlite3_bind_int64(s, at, value); }
+
+inline int bind_key(sqlite3_stmt* s, ResultKey const& key) {
+  bind(s, 1, hash_text(key.set_hash));
+  bind(s, 2, key.scenario);
+  bind(s, 3, key.behavior);
+  bind(s, 4, hash_text(key.parameters_hash));
+  bind(s, 5, key.version);
+  return 6;
+}
+
+[[nodiscard]] inline std::string text(sqlite3_stmt* s, int at) {
+  auto const* const bytes = reinterpret_cast<char const*>(sqlite3_column_text(s, at));
+  return bytes != nullptr ? bytes : "";
+}
+
+[[nodiscard]] inline std::uint64_t hash_of(std::string const& text) { return std::strtoull(text.c_str(), nullptr, 16); }
+
+/// "?, ?, ?".
+[[nodiscard]] inline std::string marks(std::size_t number) {
+  std::string text;
+  for (std::size_t i = 0; i < number; ++i) text += i == 0 ? "?" : ", ?";
+  return text;
+}
+
+/// The columns of a struct, one a field.
+[[nodiscard]] inline std::string columns(TypeInfo const& type, bool with_types) {
+  std::string text;
+  for (auto const& field : type.fields()) {
+    text += (text.empty() ? "" : ", ") + std::string(field.name);
+    auto const& held = field.type();
+    if (with_types) text += held.kind == TypeInfo::Kind::text ? " TEXT" : held.is_real() ? " REAL" : " INTEGER";
+  }
+  return text;
+}
+
+inline void bind_fields(sqlite3_stmt* s, int& at, TypeInfo const& type, void const* object) {
+  for (auto const& field : type.fields()) {
+    auto const& held = field.type();
+    auto const* const place = field.in(object);
+    if (held.kind == TypeInfo::Kind::text)
+      bind(s, at, *static_cast<std::string const*>(place));
+    else if (auto const value = PlainValue::at(place, held); held.is_real())
+      sqlite3_bind_double(s, at, value.number);
+    else if (value.is_id() && value.bits == PlainValue::highest(held).bits)
+      sqlite3_bind_null(s, at);
+    else
+      bind(s, at, static_cast<std::int64_t>(value.bits));
+    ++at;
+  }
+}
+
+inline void read_fields(sqlite3_stmt* s, int& at, TypeInfo const& type, void* object) {
+  for (auto const& field : type.fields()) {
+    auto const& held = field.type();
+    if (held.kind == TypeInfo::Kind::text) {
+      *static_cast<std::string*>(field.in(object)) = text(s, at);
+    } else {
+      auto value = PlainValue::highest(held);  // of an id: none
+      bool const is_none = value.is_id() && sqlite3_column_type(s, at) == SQLITE_NULL;
+      value.number = sqlite3_column_double(s, at);
+      if (!is_none) value.bits = static_cast<std::uint64_t>(sqlite3_column_int64(s, at));
+      value.store(field.in(object), held);
+    }
+    ++at;
+  }
+}
 
 }  // namespace detail
 
@@ -32,12 +122,13 @@ CAMBIUM_COLD void ResultStore::Finalize::operator()(sqlite3_stmt* statement) con
 
 CAMBIUM_COLD ResultStore ResultStore::existing(std::filesystem::path const& file) {
   auto db = open(file.string(), SQLITE_OPEN_READONLY);
-  bool const may_be_read = is_ours(db.get());
+  bool const may_be_read = detail::is_ours(db.get());
   int const code = sqlite3_errcode(db.get());
   if (!may_be_read && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) &&
       !std::filesystem::exists(file.string() + "-wal"))
-    db = open(immutable(file.string()), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);  // in a folder that may only be read
-  if (!is_ours(db.get()))
+    db = open(detail::immutable(file.string()),
+              SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);  // in a folder that may only be read
+  if (!detail::is_ours(db.get()))
     throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db.get())) + ")",
                      "name one that a benchmark has written");
   auto copy = open(":memory:", SQLITE_OPEN_READWRITE);
@@ -54,8 +145,8 @@ CAMBIUM_COLD ResultStore::~ResultStore() {
 
 CAMBIUM_COLD void ResultStore::begin_run(std::string const& started, std::string const& command) {
   auto statement = prepare("INSERT INTO runs(started, command) VALUES(?, ?)");
-  bind(statement.get(), 1, started);
-  bind(statement.get(), 2, command);
+  detail::bind(statement.get(), 1, started);
+  detail::bind(statement.get(), 2, command);
   step(statement.get());
   run_ = sqlite3_last_insert_rowid(db_.get());
 }
@@ -63,10 +154,10 @@ CAMBIUM_COLD void ResultStore::begin_run(std::string const& started, std::string
 CAMBIUM_COLD void ResultStore::add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios,
                                        std::string const& source) {
   auto statement = prepare("INSERT OR REPLACE INTO sets(set_hash, title, scenarios, source) VALUES(?, ?, ?, ?)");
-  bind(statement.get(), 1, hash_text(hash));
-  bind(statement.get(), 2, title);
-  bind(statement.get(), 3, static_cast<std::int64_t>(scenarios));
-  bind(statement.get(), 4, source.empty() ? source_of(hash) : source);
+  detail::bind(statement.get(), 1, hash_text(hash));
+  detail::bind(statement.get(), 2, title);
+  detail::bind(statement.get(), 3, static_cast<std::int64_t>(scenarios));
+  detail::bind(statement.get(), 4, source.empty() ? source_of(hash) : source);
   step(statement.get());
 }
 
@@ -74,16 +165,16 @@ CAMBIUM_COLD void ResultStore::add_behavior(std::string const& name, std::uint64
                                             std::string const& command) {
   auto statement =
       prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, command) VALUES(?, ?, ?, ?)");
-  bind(statement.get(), 1, name);
-  bind(statement.get(), 2, hash_text(hash));
-  bind(statement.get(), 3, parameters);
-  bind(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
+  detail::bind(statement.get(), 1, name);
+  detail::bind(statement.get(), 2, hash_text(hash));
+  detail::bind(statement.get(), 3, parameters);
+  detail::bind(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
   step(statement.get());
 }
 
 CAMBIUM_COLD bool ResultStore::has(ResultKey const& key) {
-  bind_key(has_.get(), key);
-  bool const found = has_row(has_.get()) && !may_be_the_machine(text(has_.get(), 0));
+  detail::bind_key(has_.get(), key);
+  bool const found = has_row(has_.get()) && !may_be_the_machine(detail::text(has_.get(), 0));
   sqlite3_reset(has_.get());
   return found;
 }
@@ -91,13 +182,13 @@ CAMBIUM_COLD bool ResultStore::has(ResultKey const& key) {
 CAMBIUM_COLD void ResultStore::add(ResultRow const& row) {
   if (!in_transaction_) execute("BEGIN");
   in_transaction_ = true;
-  int at = bind_key(add_result_.get(), row.key);
-  bind(add_result_.get(), at++, std::to_string(row.seed));
-  bind(add_result_.get(), at++, run_);
-  bind_fields(add_result_.get(), at, row.result);
+  int at = detail::bind_key(add_result_.get(), row.key);
+  detail::bind(add_result_.get(), at++, std::to_string(row.seed));
+  detail::bind(add_result_.get(), at++, run_);
+  detail::bind_fields(add_result_.get(), at, type_info<RunResult>(), &row.result);
   step(add_result_.get());
-  at = bind_key(add_times_.get(), row.key);
-  bind_fields(add_times_.get(), at, row.times);
+  at = detail::bind_key(add_times_.get(), row.key);
+  detail::bind_fields(add_times_.get(), at, type_info<RunTimes>(), &row.times);
   step(add_times_.get());
 }
 
@@ -108,19 +199,20 @@ CAMBIUM_COLD void ResultStore::commit() {
 
 CAMBIUM_COLD void ResultStore::for_each(std::function<void(ResultRow const&)> const& f) {
   auto statement =
-      prepare("SELECT " + std::string(detail::key_columns) + "seed, run, " + columns<RunResult>(false) + ", " +
-              columns<RunTimes>(false) +
+      prepare("SELECT " + std::string(detail::key_columns) + "seed, run, " +
+              detail::columns(type_info<RunResult>(), false) + ", " + detail::columns(type_info<RunTimes>(), false) +
               " FROM results LEFT JOIN times USING(set_hash, scenario, behavior, parameters_hash, version) ORDER BY "
               "set_hash, behavior, parameters_hash, version, scenario");
   while (has_row(statement.get())) {
     ResultRow row;
-    row.key = {hash_of(text(statement.get(), 0)), sqlite3_column_int64(statement.get(), 1), text(statement.get(), 2),
-               hash_of(text(statement.get(), 3)), text(statement.get(), 4)};
-    row.seed = std::strtoull(text(statement.get(), 5).c_str(), nullptr, 10);
+    row.key = {detail::hash_of(detail::text(statement.get(), 0)), sqlite3_column_int64(statement.get(), 1),
+               detail::text(statement.get(), 2), detail::hash_of(detail::text(statement.get(), 3)),
+               detail::text(statement.get(), 4)};
+    row.seed = std::strtoull(detail::text(statement.get(), 5).c_str(), nullptr, 10);
     row.run = sqlite3_column_int64(statement.get(), 6);
     int at = 7;
-    read_fields(statement.get(), at, row.result);
-    read_fields(statement.get(), at, row.times);
+    detail::read_fields(statement.get(), at, type_info<RunResult>(), &row.result);
+    detail::read_fields(statement.get(), at, type_info<RunTimes>(), &row.times);
     f(row);
   }
 }
@@ -149,18 +241,18 @@ CAMBIUM_COLD void ResultStore::merge(ResultStore& other) {
     auto runs = other.prepare("SELECT run, started, command FROM runs");
     auto add_run = prepare("INSERT INTO runs(run, started, command) VALUES(?, ?, ?)");
     while (other.has_row(runs.get())) {
-      bind(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
-      for (int const at : {1, 2}) bind(add_run.get(), at + 1, text(runs.get(), at));
+      detail::bind(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
+      for (int const at : {1, 2}) detail::bind(add_run.get(), at + 1, detail::text(runs.get(), at));
       step(add_run.get());
     }
     auto sets = other.prepare("SELECT set_hash, title, scenarios, source FROM sets");
     while (other.has_row(sets.get()))
-      add_set(hash_of(text(sets.get(), 0)), text(sets.get(), 1),
-              static_cast<std::size_t>(sqlite3_column_int64(sets.get(), 2)), text(sets.get(), 3));
+      add_set(detail::hash_of(detail::text(sets.get(), 0)), detail::text(sets.get(), 1),
+              static_cast<std::size_t>(sqlite3_column_int64(sets.get(), 2)), detail::text(sets.get(), 3));
     auto behaviors = other.prepare("SELECT behavior, parameters_hash, parameters, command FROM behaviors");
     while (other.has_row(behaviors.get()))
-      add_behavior(text(behaviors.get(), 0), hash_of(text(behaviors.get(), 1)), text(behaviors.get(), 2),
-                   text(behaviors.get(), 3));
+      add_behavior(detail::text(behaviors.get(), 0), detail::hash_of(detail::text(behaviors.get(), 1)),
+                   detail::text(behaviors.get(), 2), detail::text(behaviors.get(), 3));
     in_transaction_ = true;  // `add` begins none
     other.for_each([&](ResultRow const& row) {
       if (may_be_the_machine(row.result.error) && has(row.key)) return;
@@ -183,7 +275,7 @@ CAMBIUM_COLD ResultStore::ResultStore(std::filesystem::path const& file, Databas
   if (sqlite3_errcode(db_.get()) != SQLITE_OK)
     fail("cannot be opened", "name a file in a folder that exists and that you may write to");
   if (sqlite3_db_readonly(db_.get(), "main") == 1) throw StoreError(file_, "may not be written", "name another file");
-  if (has_row(prepare("SELECT 1 FROM sqlite_master WHERE type = 'table'").get()) && !is_ours(db_.get()))
+  if (has_row(prepare("SELECT 1 FROM sqlite_master WHERE type = 'table'").get()) && !detail::is_ours(db_.get()))
     throw StoreError(file_, "holds tables of another program", "name another file");
   execute("PRAGMA journal_mode=WAL");
   execute("PRAGMA synchronous=NORMAL");
@@ -197,9 +289,9 @@ CAMBIUM_COLD ResultStore::ResultStore(std::filesystem::path const& file, Databas
       "set_hash TEXT NOT NULL, scenario INTEGER NOT NULL, behavior TEXT NOT NULL, parameters_hash TEXT NOT NULL, "
       "version TEXT NOT NULL, ";
   std::string const primary = ", PRIMARY KEY(set_hash, behavior, parameters_hash, version, scenario)) WITHOUT ROWID";
-  execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " + columns<RunResult>(true) +
-          primary);
-  execute("CREATE TABLE IF NOT EXISTS times(" + key + columns<RunTimes>(true) + primary);
+  execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " +
+          detail::columns(type_info<RunResult>(), true) + primary);
+  execute("CREATE TABLE IF NOT EXISTS times(" + key + detail::columns(type_info<RunTimes>(), true) + primary);
   add_missing_column("sets", "source TEXT");  // of a database that an older version of cambium has made
   add_missing_column("behaviors", "command TEXT");
   add_missing_column("results", "others_failed INTEGER");
@@ -207,9 +299,11 @@ CAMBIUM_COLD ResultStore::ResultStore(std::filesystem::path const& file, Databas
   add_missing_column("results", "required_deceleration REAL");
   execute("COMMIT");
   add_result_ = prepare("INSERT OR REPLACE INTO results(" + std::string(detail::key_columns) + "seed, run, " +
-                        columns<RunResult>(false) + ") VALUES(" + marks(7 + count<RunResult>()) + ")");
-  add_times_ = prepare("INSERT OR REPLACE INTO times(" + std::string(detail::key_columns) + columns<RunTimes>(false) +
-                       ") VALUES(" + marks(5 + count<RunTimes>()) + ")");
+                        detail::columns(type_info<RunResult>(), false) + ") VALUES(" +
+                        detail::marks(7 + type_info<RunResult>().fields().size()) + ")");
+  add_times_ = prepare("INSERT OR REPLACE INTO times(" + std::string(detail::key_columns) +
+                       detail::columns(type_info<RunTimes>(), false) + ") VALUES(" +
+                       detail::marks(5 + type_info<RunTimes>().fields().size()) + ")");
   has_ = prepare(
       "SELECT error FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND "
       "version=?");
@@ -220,24 +314,6 @@ CAMBIUM_COLD ResultStore::Database ResultStore::open(std::string const& name, in
   sqlite3_open_v2(name.c_str(), &db, flags, nullptr);
   if (db != nullptr) sqlite3_busy_timeout(db, 60'000);
   return Database(db);
-}
-
-CAMBIUM_COLD std::string ResultStore::immutable(std::string const& file) {
-  std::string uri = "file:";
-  for (char const c : file)
-    if (c == '?' || c == '#' || c == '%')
-      uri += c == '?' ? "%3f" : c == '#' ? "%23" : "%25";
-    else
-      uri += c;
-  return uri + "?immutable=1";
-}
-
-CAMBIUM_COLD bool ResultStore::is_ours(sqlite3* db) {
-  sqlite3_stmt* query = nullptr;
-  bool const is_ours = sqlite3_prepare_v2(db, "SELECT 1 FROM runs, sets, behaviors, results, times LIMIT 0", -1, &query,
-                                          nullptr) == SQLITE_OK;
-  sqlite3_finalize(query);
-  return is_ours;
 }
 
 CAMBIUM_COLD void ResultStore::fail(std::string const& what, std::string const& remedy) const {
@@ -267,22 +343,22 @@ CAMBIUM_COLD bool ResultStore::has_row(sqlite3_stmt* query) {
 
 CAMBIUM_COLD std::string ResultStore::of_set(std::string const& column, std::uint64_t set_hash) {
   auto statement = prepare("SELECT " + column + " FROM sets WHERE set_hash=?");
-  bind(statement.get(), 1, hash_text(set_hash));
-  return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
+  detail::bind(statement.get(), 1, hash_text(set_hash));
+  return has_row(statement.get()) ? detail::text(statement.get(), 0) : std::string();
 }
 
 CAMBIUM_COLD std::string ResultStore::of_behavior(std::string const& column, std::string const& name,
                                                   std::uint64_t hash) {
   auto statement = prepare("SELECT " + column + " FROM behaviors WHERE behavior=? AND parameters_hash=?");
-  bind(statement.get(), 1, name);
-  bind(statement.get(), 2, hash_text(hash));
-  return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
+  detail::bind(statement.get(), 1, name);
+  detail::bind(statement.get(), 2, hash_text(hash));
+  return has_row(statement.get()) ? detail::text(statement.get(), 0) : std::string();
 }
 
 CAMBIUM_COLD void ResultStore::add_missing_column(std::string const& table, std::string const& column) {
   auto query = prepare("SELECT 1 FROM pragma_table_info(?) WHERE name=?");
-  bind(query.get(), 1, table);
-  bind(query.get(), 2, column.substr(0, column.find(' ')));
+  detail::bind(query.get(), 1, table);
+  detail::bind(query.get(), 2, column.substr(0, column.find(' ')));
   if (!has_row(query.get())) execute("ALTER TABLE " + table + " ADD COLUMN " + column);
 }
 
@@ -296,89 +372,6 @@ CAMBIUM_COLD void ResultStore::step(sqlite3_stmt* statement) {
   if (code != SQLITE_DONE && code != SQLITE_ROW)
     fail("cannot be written", "make room on the disk, or name another file");
   sqlite3_reset(statement);
-}
-
-CAMBIUM_COLD void ResultStore::bind(sqlite3_stmt* s, int at, std::string const& value) {
-  sqlite3_bind_text(s, at, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
-}
-
-CAMBIUM_COLD void ResultStore::bind(sqlite3_stmt* s, int at, std::int64_t value) { sqlite3_bind_int64(s, at, value); }
-
-CAMBIUM_COLD int ResultStore::bind_key(sqlite3_stmt* s, ResultKey const& key) {
-  bind(s, 1, hash_text(key.set_hash));
-  bind(s, 2, key.scenario);
-  bind(s, 3, key.behavior);
-  bind(s, 4, hash_text(key.parameters_hash));
-  bind(s, 5, key.version);
-  return 6;
-}
-
-template <class T>
-int ResultStore::count() {
-  int fields = 0;
-  for_each_parameter<T>([&](auto const&) { ++fields; });
-  return fields;
-}
-
-CAMBIUM_COLD std::string ResultStore::marks(int number) {
-  std::string text;
-  for (int i = 0; i < number; ++i) text += i == 0 ? "?" : ", ?";
-  return text;
-}
-
-template <class T>
-std::string ResultStore::columns(bool with_types) {
-  std::string text;
-  for_each_parameter<T>([&]<class P>(P const& entry) {
-    using Field = std::remove_cvref_t<decltype(std::declval<T&>().*entry.field)>;
-    text += (text.empty() ? "" : ", ") + std::string(entry.name);
-    if (!with_types) return;
-    text += std::is_same_v<Field, std::string> ? " TEXT" : std::is_floating_point_v<Field> ? " REAL" : " INTEGER";
-  });
-  return text;
-}
-
-template <class T>
-void ResultStore::bind_fields(sqlite3_stmt* s, int& at, T const& object) {
-  for_each_parameter<T>([&](auto const& entry) {
-    auto const& field = object.*entry.field;
-    using Field = std::remove_cvref_t<decltype(field)>;
-    if constexpr (std::is_same_v<Field, std::string>)
-      bind(s, at, field);
-    else if constexpr (std::is_floating_point_v<Field>)
-      sqlite3_bind_double(s, at, field);
-    else if constexpr (StrongId<Field>)
-      is_valid(field) ? sqlite3_bind_int64(s, at, static_cast<std::int64_t>(field)) : sqlite3_bind_null(s, at);
-    else
-      bind(s, at, static_cast<std::int64_t>(field));
-    ++at;
-  });
-}
-
-template <class T>
-void ResultStore::read_fields(sqlite3_stmt* s, int& at, T& object) {
-  for_each_parameter<T>([&](auto const& entry) {
-    auto& field = object.*entry.field;
-    using Field = std::remove_cvref_t<decltype(field)>;
-    if constexpr (std::is_same_v<Field, std::string>)
-      field = text(s, at);
-    else if constexpr (std::is_floating_point_v<Field>)
-      field = sqlite3_column_double(s, at);
-    else if constexpr (StrongId<Field>)
-      field = sqlite3_column_type(s, at) == SQLITE_NULL ? none<Field> : static_cast<Field>(sqlite3_column_int64(s, at));
-    else
-      field = static_cast<Field>(sqlite3_column_int64(s, at));
-    ++at;
-  });
-}
-
-CAMBIUM_COLD std::string ResultStore::text(sqlite3_stmt* s, int at) {
-  auto const* const bytes = reinterpret_cast<char const*>(sqlite3_column_text(s, at));
-  return bytes != nullptr ? bytes : "";
-}
-
-CAMBIUM_COLD std::uint64_t ResultStore::hash_of(std::string const& text) {
-  return std::strtoull(text.c_str(), nullptr, 16);
 }
 
 }  // namespace cambium
