@@ -62,7 +62,7 @@ struct Gipps {
   static constexpr char const* name = "gipps";
   static constexpr auto parameters() {
     return cb::parameter_list(cb::parameter("desired_speed", &Gipps::desired_speed, "m/s", cb::Range{0.1, 100}, "free"),
-                              cb::parameter("rules", &Gipps::rules, "-", {}, "what it heeds"));
+                              cb::parameter("rules", &Gipps::rules, "what it heeds"));
   }
   template <class View>
   [[nodiscard]] cb::Plan<View> plan(View const& view, Memory& memory, double dt) const {

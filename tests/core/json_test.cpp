@@ -44,7 +44,7 @@ struct Turn {
   static constexpr char const* name = "turn";
   static constexpr auto parameters() {
     return parameter_list(parameter("radius", &Turn::radius, "m", positive, "of the bend"),
-                          parameter("windows", &Turn::windows, "-", {}, "when"));
+                          parameter("windows", &Turn::windows, "when"));
   }
 };
 struct Secret {};  // not described
@@ -61,7 +61,7 @@ struct Shelf {
   std::vector<Book> books{};
 
   static constexpr char const* name = "shelf";
-  static constexpr auto parameters() { return parameter_list(parameter("books", &Shelf::books, "-", {}, "in order")); }
+  static constexpr auto parameters() { return parameter_list(parameter("books", &Shelf::books, "in order")); }
 };
 
 struct Everything {
@@ -91,14 +91,12 @@ struct Everything {
         parameter("single", &P::single, "m", any_finite, "in single precision"),
         parameter("integer", &P::integer, "-", Range{-10, 10}, "an integer"),
         parameter("natural", &P::natural, "-", Range{0, 1.8446744073709552e19}, "a natural number"),
-        parameter("small", &P::small, "-", Range{0, 255}, "a byte"),
-        parameter("truth", &P::truth, "-", Range{0, 1}, "yes or no"),
-        choice("mood", &P::mood, "calm|hasty", "a choice"), parameter("agent", &P::agent, "-", {}, "an id"),
-        parameter("lane", &P::lane, "-", {}, "a lane"), parameter("text", &P::text, "-", {}, "a text"),
-        parameter("window", &P::window, "-", {}, "a struct"), parameter("way", &P::way, "-", {}, "an alternative"),
+        parameter("small", &P::small, "-", Range{0, 255}, "a byte"), parameter("truth", &P::truth, "yes or no"),
+        choice("mood", &P::mood, "calm|hasty", "a choice"), parameter("agent", &P::agent, "an id"),
+        parameter("lane", &P::lane, "a lane"), parameter("text", &P::text, "a text"),
+        parameter("window", &P::window, "a struct"), parameter("way", &P::way, "an alternative"),
         parameter("maybe", &P::maybe, "-", any_finite, "an optional"),
-        parameter("pair", &P::pair, "-", any_finite, "of fixed length"),
-        parameter("windows", &P::windows, "-", {}, "structs"),
+        parameter("pair", &P::pair, "-", any_finite, "of fixed length"), parameter("windows", &P::windows, "structs"),
         parameter("numbers", &P::numbers, "-", any_finite, "numbers"),
         parameter("shared", &P::shared, "-", any_finite, "behind a pointer"));
   }

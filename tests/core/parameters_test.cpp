@@ -57,9 +57,9 @@ struct Timetable {
   static constexpr char const* name = "plan";
   static constexpr auto parameters() {
     return parameter_list(parameter("weights", &Timetable::weights, "kg", {0, 10}, "Of each half."),
-                          parameter("windows", &Timetable::windows, "-", {}, "When it drives."),
-                          parameter("shared", &Timetable::shared, "-", {}, "When others do."),
-                          parameter("lane", &Timetable::lane, "-", {}, "Where."));
+                          parameter("windows", &Timetable::windows, "When it drives."),
+                          parameter("shared", &Timetable::shared, "When others do."),
+                          parameter("lane", &Timetable::lane, "Where."));
   }
 };
 

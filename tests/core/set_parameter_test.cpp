@@ -23,7 +23,7 @@ struct Search {
     return parameter_list(parameter("discount", &P::discount, "-", Range{0, 1}, "of later rewards"),
                           parameter("depth", &P::depth, "-", Range{1, 9}, "of the tree"),
                           parameter("speed", &P::speed, "m/s", {}, "how it is drawn"),
-                          parameter("parts", &P::parts, "-", {}, "a list"));
+                          parameter("parts", &P::parts, "a list"));
   }
 };
 

@@ -94,7 +94,7 @@ struct Greedy {
   static constexpr auto parameters() {
     return parameter_list(parameter("horizon", &Greedy::horizon, "s", Range{0.2, 60}, "duration of the predictions"),
                           parameter("step", &Greedy::step, "s", Range{0.01, 1}, "time step of the predictions"),
-                          parameter("budget", &Greedy::budget, "-", {}, "how many accelerations are tried"));
+                          parameter("budget", &Greedy::budget, "how many accelerations are tried"));
   }
 
   template <class View>

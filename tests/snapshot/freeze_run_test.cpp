@@ -31,7 +31,7 @@ struct Tired {
   static constexpr char const* name = "tired";
   static constexpr auto parameters() {
     return parameter_list(parameter("until", &Tired::until, "s", non_negative, "how long it drives"),
-                          parameter("throws", &Tired::throws, "-", {}, "what then"));
+                          parameter("throws", &Tired::throws, "what then"));
   }
   template <class View>
   Plan<View> plan(View const& view, NoMemory& memory, double dt) const {

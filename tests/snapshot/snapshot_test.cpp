@@ -95,7 +95,7 @@ struct Before {
   static constexpr char const* name = "settings";
   static constexpr auto parameters() {
     return parameter_list(parameter("a", &Before::a, "m", any_finite, "a length"),
-                          parameter("list", &Before::list, "-", {}, "of weights"));
+                          parameter("list", &Before::list, "of weights"));
   }
 };
 struct After {
@@ -105,7 +105,7 @@ struct After {
   static constexpr char const* name = "settings";
   static constexpr auto parameters() {
     return parameter_list(parameter("a", &After::a, "m", any_finite, "a length"),
-                          parameter("list", &After::list, "-", {}, "of weights"),
+                          parameter("list", &After::list, "of weights"),
                           parameter("added", &After::added, "s", any_finite, "later than the others"));
   }
 };
@@ -114,7 +114,7 @@ struct Upgraded : After {
   static constexpr unsigned version = 2;
   static constexpr auto parameters() {
     return parameter_list(parameter("a", &Upgraded::a, "mm", any_finite, "a length"),
-                          parameter("list", &Upgraded::list, "-", {}, "of weights"));
+                          parameter("list", &Upgraded::list, "of weights"));
   }
   void upgrade(unsigned from) {
     if (from < 2) a *= 1000.0;
@@ -124,7 +124,7 @@ template <class Value>
 struct Flag {
   Value value{};
   static constexpr char const* name = "flag";
-  static constexpr auto parameters() { return parameter_list(parameter("value", &Flag::value, "-", {}, "")); }
+  static constexpr auto parameters() { return parameter_list(parameter("value", &Flag::value, "")); }
 };
 /// In percent, then in tenths: another version, with another range.
 template <bool in_tenths>
@@ -143,8 +143,7 @@ struct Shares {
   std::shared_ptr<std::vector<Share<in_tenths>> const> shared;
   static constexpr char const* name = "shares";
   static constexpr auto parameters() {
-    return parameter_list(parameter("one", &Shares::one, "-", {}, ""),
-                          parameter("shared", &Shares::shared, "-", {}, ""));
+    return parameter_list(parameter("one", &Shares::one, ""), parameter("shared", &Shares::shared, ""));
   }
 };
 /// Was a share alone; the others came later.
@@ -154,14 +153,14 @@ struct MoreShares {
   static constexpr char const* name = "more_shares";
   static constexpr auto parameters() {
     using P = MoreShares;
-    return parameter_list(parameter("one", &P::one, "-", {}, ""), parameter("added", &P::added, "-", {}, ""),
-                          parameter("maybe", &P::maybe, "-", {}, ""));
+    return parameter_list(parameter("one", &P::one, ""), parameter("added", &P::added, ""),
+                          parameter("maybe", &P::maybe, ""));
   }
 };
 struct OneShare {
   Share<false> one;
   static constexpr char const* name = "more_shares";
-  static constexpr auto parameters() { return parameter_list(parameter("one", &OneShare::one, "-", {}, "")); }
+  static constexpr auto parameters() { return parameter_list(parameter("one", &OneShare::one, "")); }
 };
 /// 0: as it was saved; 1: two fields have changed places; 2: one is of another kind.
 template <int change>
@@ -191,11 +190,11 @@ struct Texts {
   struct Text {
     std::string text{};
     static constexpr char const* name = "text";
-    static constexpr auto parameters() { return parameter_list(parameter("text", &Text::text, "-", {}, "")); }
+    static constexpr auto parameters() { return parameter_list(parameter("text", &Text::text, "")); }
   };
   std::vector<Text> all{};
   static constexpr char const* name = "texts";
-  static constexpr auto parameters() { return parameter_list(parameter("all", &Texts::all, "-", {}, "")); }
+  static constexpr auto parameters() { return parameter_list(parameter("all", &Texts::all, "")); }
 };
 struct Nameless {
   int count = 0;
@@ -221,8 +220,8 @@ struct Nest {
   OneOf<T, Inner> one, two;
   static constexpr char const* name = "nest";
   static constexpr auto parameters() {
-    return parameter_list(parameter("list", &Nest::list, "-", {}, ""), parameter("one", &Nest::one, "-", {}, ""),
-                          parameter("two", &Nest::two, "-", {}, ""));
+    return parameter_list(parameter("list", &Nest::list, ""), parameter("one", &Nest::one, ""),
+                          parameter("two", &Nest::two, ""));
   }
 };
 /// All kinds of fields.
@@ -244,15 +243,14 @@ struct Kinds {
   static constexpr auto parameters() {
     using P = Kinds;
     constexpr double inf = std::numeric_limits<double>::infinity();
-    return parameter_list(
-        parameter("flag", &P::flag, "-", Range{0, 1}, ""), cambium::choice("choice", &P::choice, "one|two", ""),
-        parameter("below", &P::below, "-", Range{-1e19, 1e19}, ""),
-        parameter("large", &P::large, "-", Range{0, 1.9e19}, ""),
-        parameter("single", &P::single, "-", Range{-inf, inf}, ""),
-        parameter("number", &P::number, "-", Range{-inf, inf}, ""), parameter("text", &P::text, "-", {}, ""),
-        parameter("maybe", &P::maybe, "-", {}, ""), parameter("variant", &P::variant, "-", {}, ""),
-        parameter("shared", &P::shared, "-", any_finite, ""), parameter("fixed", &P::fixed, "-", any_finite, ""),
-        parameter("id", &P::id, "-", {}, ""));
+    return parameter_list(parameter("flag", &P::flag, ""), cambium::choice("choice", &P::choice, "one|two", ""),
+                          parameter("below", &P::below, "-", Range{-1e19, 1e19}, ""),
+                          parameter("large", &P::large, "-", Range{0, 1.9e19}, ""),
+                          parameter("single", &P::single, "-", Range{-inf, inf}, ""),
+                          parameter("number", &P::number, "-", Range{-inf, inf}, ""), parameter("text", &P::text, ""),
+                          parameter("maybe", &P::maybe, ""), parameter("variant", &P::variant, ""),
+                          parameter("shared", &P::shared, "-", any_finite, ""),
+                          parameter("fixed", &P::fixed, "-", any_finite, ""), parameter("id", &P::id, ""));
   }
 };
 

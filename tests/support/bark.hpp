@@ -52,7 +52,7 @@ struct Driver {
 
   static constexpr char const* name = "bark_driver";
   static constexpr auto parameters() {
-    return cb::parameter_list(cb::parameter("idm", &Driver::idm, "-", {}, "car following"),
+    return cb::parameter_list(cb::parameter("idm", &Driver::idm, "car following"),
                               cb::parameter("coolness", &Driver::coolness, "-", cb::Range{0, 1}, "of the ACC model"));
   }
 

@@ -67,9 +67,9 @@ struct RunPosition {
   static constexpr char const* name = "run";
   static constexpr auto parameters() {
     using P = RunPosition;
-    return parameter_list(parameter("contender", &P::contender, "-", {}, "who drives"),
-                          parameter("ego", &P::ego, "-", {}, "the agent that the run is about"),
-                          parameter("controlled", &P::controlled, "-", {}, "further agents that the contender drives"),
+    return parameter_list(parameter("contender", &P::contender, "who drives"),
+                          parameter("ego", &P::ego, "the agent that the run is about"),
+                          parameter("controlled", &P::controlled, "further agents that the contender drives"),
                           parameter("time_step", &P::time_step, "s", Range{1e-6, 1e6}, "of the run"),
                           parameter("time_limit", &P::time_limit, "s", Range{0, 1e12}, "of the run"));
   }

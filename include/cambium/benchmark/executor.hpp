@@ -25,12 +25,12 @@ struct JobOutcome {
   static constexpr char const* name = "outcome";
   static constexpr auto parameters() {
     using P = JobOutcome;
-    return parameter_list(parameter("result", &P::result, "-", {}, "what came of the run"),
-                          parameter("times", &P::times, "-", {}, "how long its plans took"),
-                          parameter("replay", &P::replay, "-", {}, "page for browsers"),
-                          parameter("snapshot", &P::snapshot, "-", {}, "as in Run"),
-                          parameter("problem", &P::problem, "-", {}, "why one of them is missing"),
-                          parameter("setup", &P::setup, "-", {}, "hash of set and contender"));
+    return parameter_list(parameter("result", &P::result, "what came of the run"),
+                          parameter("times", &P::times, "how long its plans took"),
+                          parameter("replay", &P::replay, "page for browsers"),
+                          parameter("snapshot", &P::snapshot, "as in Run"),
+                          parameter("problem", &P::problem, "why one of them is missing"),
+                          parameter("setup", &P::setup, "hash of set and contender"));
   }
 };
 

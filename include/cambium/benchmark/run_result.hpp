@@ -60,16 +60,16 @@ struct RunResult {
   static constexpr auto parameters() {
     using P = RunResult;
     constexpr Range share{0, 1};
-    auto const outcome = parameter_list(
-        parameter("success", &P::success, "-", share, "the ego reached its goal in time, without a collision"),
-        parameter("collision", &P::collision, "-", share, "the ego touched an agent or an object"),
-        parameter("at_fault", &P::at_fault, "-", share, "it caused that: it moved, and the other was not behind it"),
-        parameter("off_road", &P::off_road, "-", share, "a part of it left the drivable lanes"),
-        parameter("off_route", &P::off_route, "-", share, "it left its route, or traffic before its goal"),
-        parameter("timed_out", &P::timed_out, "-", share, "the time limit passed"),
-        parameter("error", &P::error, "-", {}, "why the run could not go on; empty: it could"),
-        parameter("steps", &P::steps, "-", non_negative, "number of steps"),
-        parameter("duration_s", &P::duration_s, "s", non_negative, "until the run ended"));
+    auto const outcome =
+        parameter_list(parameter("success", &P::success, "the ego reached its goal in time, without a collision"),
+                       parameter("collision", &P::collision, "the ego touched an agent or an object"),
+                       parameter("at_fault", &P::at_fault, "it caused that: it moved, and the other was not behind it"),
+                       parameter("off_road", &P::off_road, "a part of it left the drivable lanes"),
+                       parameter("off_route", &P::off_route, "it left its route, or traffic before its goal"),
+                       parameter("timed_out", &P::timed_out, "the time limit passed"),
+                       parameter("error", &P::error, "why the run could not go on; empty: it could"),
+                       parameter("steps", &P::steps, "-", non_negative, "number of steps"),
+                       parameter("duration_s", &P::duration_s, "s", non_negative, "until the run ended"));
     auto const driving = parameter_list(
         parameter("progress_m", &P::progress_m, "m", any_finite, "way along the lanes"),
         parameter("mean_speed", &P::mean_speed, "m/s", non_negative, "over time"),
@@ -90,7 +90,7 @@ struct RunResult {
                   "number of steps in which a collision without the ego began"),
         parameter("others_failed", &P::others_failed, "-", non_negative,
                   "number of agents that found no plan, or an impossible one, and left traffic; not those under test"),
-        parameter("hit", &P::hit, "-", {}, "the agent that the ego touched"));
+        parameter("hit", &P::hit, "the agent that the ego touched"));
     return join_parameters(outcome, driving);
   }
 };

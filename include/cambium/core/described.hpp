@@ -49,6 +49,12 @@ template <class Owner, class Field>
   return {{name, unit, range, sentence}, field};
 }
 
+/// Describes a field without unit and range: a bool, an id, a text, or a struct, a `OneOf` or a list of these.
+template <class Owner, class Field>
+[[nodiscard]] constexpr Parameter<Owner, Field> parameter(char const* name, Field Owner::*field, char const* sentence) {
+  return {{name, "-", {}, sentence}, field};
+}
+
 /// Describes a field that is an enum. `names`: the names of its values, from 0 on, as "rk4|euler".
 template <class Owner, class Field>
 [[nodiscard]] constexpr Parameter<Owner, Field> choice(char const* name, Field Owner::*field, char const* names,

@@ -83,7 +83,7 @@ class RandomStream {
     return parameter_list(parameter("counter", &P::counter_, "-", whole, "of the next bits"),
                           parameter("key", &P::key_, "-", whole, "halves of the seed"),
                           parameter("spare", &P::spare_, "-", Range{0, 1.9e19}, "drawn, but not given yet"),
-                          parameter("has_spare", &P::has_spare_, "-", Range{0, 1}, "whether there is such"));
+                          parameter("has_spare", &P::has_spare_, "whether there is such"));
   }
 
  private:

@@ -43,13 +43,12 @@ struct Weighted {
   static constexpr auto parameters() {
     using P = Weighted;
     return parameter_list(
-        parameter("evaluator", &P::evaluator, "-", {}, "returns a bool or a number"),
+        parameter("evaluator", &P::evaluator, "returns a bool or a number"),
         parameter("weight", &P::weight, "-", any_finite, "factor on its value"),
         parameter("cost", &P::cost, "-", Range{0, 1},
                   "of a value other than 0: the probability of the event that a limit on risk bounds; for Mcts only"),
-        parameter("per_second", &P::per_second, "-", Range{0, 1},
-                  "whether the term is multiplied by the duration of the step"),
-        parameter("ends", &P::ends, "-", Range{0, 1}, "whether a value other than 0 ends the course"));
+        parameter("per_second", &P::per_second, "whether the term is multiplied by the duration of the step"),
+        parameter("ends", &P::ends, "whether a value other than 0 ends the course"));
   }
 
   template <class World>
@@ -111,8 +110,8 @@ struct Terms<First, Rest...> {
   static constexpr char const* name = "terms";
   static constexpr char const* summary = "a sum of weighted evaluators";
   static constexpr auto parameters() {
-    return parameter_list(parameter("first", &Terms::first, "-", {}, "the first term"),
-                          parameter("rest", &Terms::rest, "-", {}, "the other terms"));
+    return parameter_list(parameter("first", &Terms::first, "the first term"),
+                          parameter("rest", &Terms::rest, "the other terms"));
   }
 
   /// The term of evaluator `E`.

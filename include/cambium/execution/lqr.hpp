@@ -37,7 +37,7 @@ struct LqrExecution {
         parameter("speed_weight", &Self::speed_weight, "s^2/m^2", weight, "of the squared speed error"),
         parameter("acceleration_weight", &Self::acceleration_weight, "s^4/m^2", of_input,
                   "of the squared acceleration"),
-        parameter("actuation", &Self::actuation, "-", {}, "delay and noise of the commands"));
+        parameter("actuation", &Self::actuation, "delay and noise of the commands"));
   }
 
   template <MotionState S>

@@ -29,7 +29,7 @@ struct StanleyExecution {
         parameter("softening_speed", &Self::softening_speed, "m/s", Range{0, 20}, "calms the steering at low speed"),
         parameter("speed_gain", &Self::speed_gain, "1/s", Range{0, 20}, "acceleration per speed error"),
         parameter("lag_gain", &Self::lag_gain, "1/s^2", Range{0, 20}, "acceleration per distance lagged behind"),
-        parameter("actuation", &Self::actuation, "-", {}, "delay and noise of the commands"));
+        parameter("actuation", &Self::actuation, "delay and noise of the commands"));
   }
 
   template <MotionState S>

@@ -101,11 +101,11 @@ struct TrackingMemory {
   static constexpr auto parameters() {
     using P = TrackingMemory;
     return parameter_list(
-        parameter("reference", &P::reference, "-", {}, "where the plan is now"),
+        parameter("reference", &P::reference, "where the plan is now"),
         parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "commands, the first in effect"),
         parameter("steering", &P::steering, "rad", any_finite, "likewise"),
         parameter("waited", &P::waited, "s", any_finite, "since the last command"),
-        parameter("begun", &P::begun, "-", Range{0, 1}, "a command was given"));
+        parameter("begun", &P::begun, "a command was given"));
   }
 
   friend bool operator==(TrackingMemory const&, TrackingMemory const&) = default;

@@ -26,7 +26,7 @@ struct AllGoals {
   static constexpr char const* name = "all_goals";
   static constexpr char const* summary = "all of its parts, at the same time";
   static constexpr auto parameters() {
-    return cambium::parameter_list(cambium::parameter("parts", &AllGoals::parts, "-", {}, "goals"));
+    return cambium::parameter_list(cambium::parameter("parts", &AllGoals::parts, "goals"));
   }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const;
@@ -39,7 +39,7 @@ struct AnyGoal {
   static constexpr char const* name = "any_goal";
   static constexpr char const* summary = "one of its parts";
   static constexpr auto parameters() {
-    return cambium::parameter_list(cambium::parameter("parts", &AnyGoal::parts, "-", {}, "goals"));
+    return cambium::parameter_list(cambium::parameter("parts", &AnyGoal::parts, "goals"));
   }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const;
@@ -55,7 +55,7 @@ struct GoalSequence {
   static constexpr char const* name = "goal_sequence";
   static constexpr char const* summary = "its parts, one after the other";
   static constexpr auto parameters() {
-    return cambium::parameter_list(cambium::parameter("parts", &GoalSequence::parts, "-", {}, "goals"));
+    return cambium::parameter_list(cambium::parameter("parts", &GoalSequence::parts, "goals"));
   }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const { return at.passed >= parts.size() && !parts.empty(); }

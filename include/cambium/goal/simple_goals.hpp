@@ -69,7 +69,7 @@ struct ReachLane {
   static constexpr char const* summary = "the reference point is in a lane, between two positions along its path";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("lane", &ReachLane::lane, "-", {}, "of the map"),
+        parameter("lane", &ReachLane::lane, "of the map"),
         parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
         parameter("to", &ReachLane::to, "m", detail::any_number, "along the path of the lane, at least from"));
   }
@@ -136,7 +136,7 @@ struct LaneLimits {
   static constexpr auto parameters() {
     using P = LaneLimits;
     return parameter_list(
-        parameter("lane", &P::lane, "-", {}, "a lane of the map; none: the agent's current lane"),
+        parameter("lane", &P::lane, "a lane of the map; none: the agent's current lane"),
         parameter("from", &P::from, "m", detail::any_number, "along the path of the lane"),
         parameter("to", &P::to, "m", detail::any_number, "along the path of the lane, at least from"),
         parameter("left", &P::left, "m", detail::any_number, "farthest to the left of the path"),
@@ -192,7 +192,7 @@ struct ReachLaneBeside {
     using P = ReachLaneBeside;
     return parameter_list(
         choice("side", &P::side, "left|right", "side of the lane corridor of `from`"),
-        parameter("from", &P::from, "-", {}, "reference lane of the map; none: the lane in which the agent enters"),
+        parameter("from", &P::from, "reference lane of the map; none: the lane in which the agent enters"),
         parameter("tolerance", &P::tolerance, "m", non_negative, "from the centre line of that corridor"));
   }
 

@@ -58,10 +58,9 @@ struct MapOptions {
                   "how far before an overlap merging traffic is taken into account"),
         parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
                   "longest stretch over which an ending lane swings onto its neighbour"),
-        parameter("infer_links", &P::infer_links, "-", Range{0, 1},
-                  "join lanes whose ends meet where the file has forgotten the link"),
-        parameter("conflict_shape", &P::conflict_shape, "-", {}, "the body that conflicts at junctions are found for"),
-        parameter("large_conflict_shape", &P::large_conflict_shape, "-", {}, "the same where larger vehicles drive"));
+        parameter("infer_links", &P::infer_links, "join lanes whose ends meet where the file has forgotten the link"),
+        parameter("conflict_shape", &P::conflict_shape, "the body that conflicts at junctions are found for"),
+        parameter("large_conflict_shape", &P::large_conflict_shape, "the same where larger vehicles drive"));
   }
 };
 

@@ -29,8 +29,8 @@ struct ObserverStages<std::index_sequence<i...>, Observers...> : ObserverStage<i
 
   static constexpr bool are_described = (Described<Observers> && ...);
   static constexpr auto parameters() requires are_described {
-    return parameter_list(parameter(keys[i], &ObserverStage<i, Observers>::observer, "-", {},
-                                    "a stage, by its place in the sequence")...);
+    return parameter_list(
+        parameter(keys[i], &ObserverStage<i, Observers>::observer, "a stage, by its place in the sequence")...);
   }
 
   /// Calls `f(observer...)` with all stages in order.

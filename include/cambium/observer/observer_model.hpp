@@ -91,7 +91,7 @@ struct PastStates {
   static constexpr char const* name = "past_states";
   static constexpr auto parameters() {
     using P = PastStates;
-    return parameter_list(parameter("states", &P::states, "-", {}, "latest first"),
+    return parameter_list(parameter("states", &P::states, "latest first"),
                           parameter("accelerations", &P::accelerations, "m/s^2", any_finite, "likewise"));
   }
 

@@ -184,9 +184,9 @@ struct OccludedObserver {
         parameter("field_of_view", &P::field_of_view, "rad", Range{0, 7},
                   "angle centred on the heading; 2 pi: all around"),
         parameter("resolution", &P::resolution, "rad", Range{0, 1}, "smallest visible angle"),
-        parameter("behind_vehicles", &P::behind_vehicles, "-", Range{0, 1}, "sees through vehicles"),
-        parameter("behind_objects", &P::behind_objects, "-", Range{0, 1}, "sees through static objects"),
-        parameter("objects_known", &P::objects_known, "-", Range{0, 1}, "knows all static objects, as if from a map"));
+        parameter("behind_vehicles", &P::behind_vehicles, "sees through vehicles"),
+        parameter("behind_objects", &P::behind_objects, "sees through static objects"),
+        parameter("objects_known", &P::objects_known, "knows all static objects, as if from a map"));
   }
 
   template <MotionState S>

@@ -132,8 +132,8 @@ struct ParametricObserver {
   static constexpr char const* source = "normal distribution; after BARK";
   static constexpr auto parameters() {
     using P = ParametricObserver;
-    return parameter_list(parameter("own", &P::own, "-", {}, "errors of its own state"),
-                          parameter("others", &P::others, "-", {}, "errors of the others' states"),
+    return parameter_list(parameter("own", &P::own, "errors of its own state"),
+                          parameter("others", &P::others, "errors of the others' states"),
                           parameter("lasting", &P::lasting, "-", Range{1, 1e6}, "steps between new errors"));
   }
 

@@ -30,12 +30,12 @@ struct JunctionTraffic {
   static constexpr auto parameters() {
     using P = JunctionTraffic;
     return parameter_list(
-        parameter("mix", &P::mix, "-", {}, "which vehicles; trucks and vans only on routes whose bends they can drive"),
+        parameter("mix", &P::mix, "which vehicles; trucks and vans only on routes whose bends they can drive"),
         parameter("most_vehicles", &P::most_vehicles, "-", Range{4, 1000},
                   "there are 4 to this many, but no more than fit at distances of 18 m"),
-        parameter("lights", &P::lights, "-", Range{0, 1},
+        parameter("lights", &P::lights,
                   "1: traffic lights are on, green for 15 s one after the other; 0: they are off"),
-        parameter("scattered_ids", &P::scattered_ids, "-", Range{0, 1}, "1: random agent ids; 0: ascending ones"));
+        parameter("scattered_ids", &P::scattered_ids, "1: random agent ids; 0: ascending ones"));
   }
 };
 

@@ -39,8 +39,8 @@ struct DrawnParameter {
   static constexpr char const* name = "drawn_parameter";
   static constexpr auto parameters() {
     using P = DrawnParameter;
-    return parameter_list(parameter("key", &P::key, "-", {}, "of the parameter, as idm.desired_speed"),
-                          parameter("value", &P::value, "-", {}, "how it is drawn"));
+    return parameter_list(parameter("key", &P::key, "of the parameter, as idm.desired_speed"),
+                          parameter("value", &P::value, "how it is drawn"));
   }
 };
 
@@ -62,9 +62,9 @@ struct DriverShare {
         parameter_list(parameter("share", &P::share, "-", non_negative, "of the drivers, relative to the others'"),
                        choice("vehicle", &P::vehicle, "any|car|van|truck|bus|bicycle|pedestrian",
                               "any: by the mix of the traffic"),
-                       parameter("behavior", &P::behavior, "-", {}, "of these drivers"),
-                       parameter("drawn", &P::drawn, "-", {}, "parameters of the behavior that differ by driver")),
-        detail::if_described(parameter("observer", &P::observer, "-", {}, "how they see the others")));
+                       parameter("behavior", &P::behavior, "of these drivers"),
+                       parameter("drawn", &P::drawn, "parameters of the behavior that differ by driver")),
+        detail::if_described(parameter("observer", &P::observer, "how they see the others")));
   }
 };
 
@@ -88,20 +88,17 @@ struct LaneFlow {
   static constexpr char const* name = "lane_flow";
   static constexpr auto parameters() {
     using P = LaneFlow;
-    auto const where =
-        parameter_list(parameter("from", &P::from, "-", {}, "source: the lane where the way begins"),
-                       parameter("to", &P::to, "-", {},
-                                 "sink: the lane where it ends; absent: it leads to the goal, else straight on"),
-                       parameter("from_point", &P::from_point, "m", {}, "instead of from: a point in the lane"),
-                       parameter("to_point", &P::to_point, "m", {}, "instead of to: a point in the lane"),
-                       parameter("way", &P::way, "m", any_finite,
-                                 "instead of from and to: points of a way that is no lane, as on foot"));
+    auto const where = parameter_list(
+        parameter("from", &P::from, "source: the lane where the way begins"),
+        parameter("to", &P::to, "sink: the lane where it ends; absent: it leads to the goal, else straight on"),
+        parameter("from_point", &P::from_point, "m", {}, "instead of from: a point in the lane"),
+        parameter("to_point", &P::to_point, "m", {}, "instead of to: a point in the lane"),
+        parameter("way", &P::way, "m", any_finite,
+                  "instead of from and to: points of a way that is no lane, as on foot"));
     auto const what = parameter_list(
-        parameter("traffic", &P::traffic, "-", {}, "where on the way, speeds, gaps, vehicles"),
-        parameter("drivers", &P::drivers, "-", {},
-                  "drawn by their shares; without any: IDM drivers as drawn by traffic"),
-        parameter("goal", &P::goal, "-", {}, "of the vehicles"),
-        choice("goal_of", &P::goal_of, "all|ego", "who has the goal"),
+        parameter("traffic", &P::traffic, "where on the way, speeds, gaps, vehicles"),
+        parameter("drivers", &P::drivers, "drawn by their shares; without any: IDM drivers as drawn by traffic"),
+        parameter("goal", &P::goal, "of the vehicles"), choice("goal_of", &P::goal_of, "all|ego", "who has the goal"),
         choice("ego", &P::ego, "none|first|middle|last|random", "which vehicle is the ego; the front one is the first"),
         parameter("controlled_share", &P::controlled_share, "-", Range{0, 1},
                   "part of the other vehicles that a benchmark drives, too"));

@@ -47,7 +47,7 @@ struct LaneTraffic {
                   "time gap to the leader, besides the minimum gap and what braking to "
                   "its speed takes"),
         parameter("gap", &P::gap, "m", {}, "instead of headway: bumper to bumper"),
-        parameter("mix", &P::mix, "-", {}, "which vehicles"));
+        parameter("mix", &P::mix, "which vehicles"));
   }
 
   /// Throws `ParameterError` if what is drawn can be out of range.

@@ -28,10 +28,10 @@ struct MergingTraffic {
   static constexpr char const* name = "merging_traffic";
   static constexpr auto parameters() {
     using P = MergingTraffic;
-    return parameter_list(parameter("mix", &P::mix, "-", {}, "which vehicles"),
+    return parameter_list(parameter("mix", &P::mix, "which vehicles"),
                           parameter("non_yielding_share", &P::non_yielding_share, "-", Range{0, 1},
                                     "part of the drivers on the through road who open no gap (`Merging::ignored`)"),
-                          parameter("ramp_waits", &P::ramp_waits, "-", Range{0, 1},
+                          parameter("ramp_waits", &P::ramp_waits,
                                     "1: drivers on the ramp wait for a gap (`Merging::gives_way`); 0: they force "
                                     "their way"));
   }

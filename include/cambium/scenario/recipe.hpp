@@ -43,20 +43,20 @@ struct ScenarioRecipe {
   static constexpr auto parameters() {
     using P = ScenarioRecipe;
     auto const what = parameter_list(
-        parameter("title", &P::title, "-", {}, "of the scenarios; by default that of the set"),
-        parameter("map_file", &P::map_file, "-", {}, "OpenDRIVE file, relative to the folder of the scenario file"),
+        parameter("title", &P::title, "of the scenarios; by default that of the set"),
+        parameter("map_file", &P::map_file, "OpenDRIVE file, relative to the folder of the scenario file"),
         choice("kind", &P::kind, "lanes|merging|highway|junction",
                "traffic as given by flows, or at the merge, on the road or at the junctions of the map"),
         parameter("seed", &P::seed, "-", Range{0, 1.8446744073709552e19}, "of all random numbers"),
         parameter("first", &P::first, "-", Range{0, 4e9}, "number of the first scenario of the seed"),
         parameter("scenarios", &P::scenarios, "-", Range{1, 1e7}, "how many"));
     auto const how =
-        parameter_list(parameter("merging", &P::merging, "-", {}, "what traffic consists of (merging)"),
-                       parameter("junction", &P::junction, "-", {}, "what traffic consists of (junction)"),
-                       parameter("flows", &P::flows, "-", {}, "traffic from sources to sinks (lanes)"),
-                       parameter("lights", &P::lights, "-", {}, "of the map's first traffic lights (lanes)"),
+        parameter_list(parameter("merging", &P::merging, "what traffic consists of (merging)"),
+                       parameter("junction", &P::junction, "what traffic consists of (junction)"),
+                       parameter("flows", &P::flows, "traffic from sources to sinks (lanes)"),
+                       parameter("lights", &P::lights, "of the map's first traffic lights (lanes)"),
                        parameter("objects", &P::objects, "m", any_finite, "corners of static objects (lanes)"),
-                       parameter("room", &P::room, "-", {}, "that a vehicle needs; without, it is left out (lanes)"));
+                       parameter("room", &P::room, "that a vehicle needs; without, it is left out (lanes)"));
     return join_parameters(what, how);
   }
 };

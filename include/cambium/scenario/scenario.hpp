@@ -53,14 +53,14 @@ struct Scenario {
   static constexpr auto parameters() {
     using P = Scenario;
     return parameter_list(
-        parameter("title", &P::title, "-", {}, "for reports"),
-        parameter("map_file", &P::map_file, "-", {}, "OpenDRIVE file, relative to the folder of the scenario file"),
+        parameter("title", &P::title, "for reports"),
+        parameter("map_file", &P::map_file, "OpenDRIVE file, relative to the folder of the scenario file"),
         parameter("seed", &P::seed, "-", Range{0, std::numeric_limits<double>::max()}, "of the random numbers"),
-        parameter("ego", &P::ego, "-", {}, "the agent that the scenario is about"),
-        parameter("controlled", &P::controlled, "-", {}, "further agents that a benchmark drives"),
-        parameter("lights", &P::lights, "-", {}, "of the map's first traffic lights; the others are off"),
+        parameter("ego", &P::ego, "the agent that the scenario is about"),
+        parameter("controlled", &P::controlled, "further agents that a benchmark drives"),
+        parameter("lights", &P::lights, "of the map's first traffic lights; the others are off"),
         parameter("objects", &P::objects, "m", any_finite, "corners of static objects"),
-        parameter("agents", &P::agents, "-", {}, "in the order in which they enter"));
+        parameter("agents", &P::agents, "in the order in which they enter"));
   }
 
   /// A world with all agents in it. Throws `WorldError` if an agent or a light plan is invalid, if two agents have the

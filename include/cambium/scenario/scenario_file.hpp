@@ -39,8 +39,8 @@ struct PackedSet {
   static constexpr char const* name = "packed_set";
   static constexpr auto parameters() {
     using P = PackedSet;
-    return parameter_list(parameter("lanes", &P::lanes, "-", {}, "names of all lanes"),
-                          parameter("set", &P::set, "-", {}, "with numbers of these names as lanes"));
+    return parameter_list(parameter("lanes", &P::lanes, "names of all lanes"),
+                          parameter("set", &P::set, "with numbers of these names as lanes"));
   }
 };
 

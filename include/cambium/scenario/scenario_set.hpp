@@ -31,11 +31,11 @@ struct ScenarioSet {
     using P = ScenarioSet;
     return parameter_list(
         parameter("format", &P::format, "-", Range{0, latest_format}, "version of the file format"),
-        parameter("title", &P::title, "-", {}, "for reports"),
+        parameter("title", &P::title, "for reports"),
         parameter("time_step", &P::time_step, "s", Range{0.001, 10}, "of the simulation"),
         parameter("time_limit", &P::time_limit, "s", Range{0.001, 1e6}, "a scenario that takes longer has timed out"),
-        parameter("scenarios", &P::scenarios, "-", {}, "situations to start from"),
-        parameter("recipes", &P::recipes, "-", {}, "for more of them, drawn when the file is read"));
+        parameter("scenarios", &P::scenarios, "situations to start from"),
+        parameter("recipes", &P::recipes, "for more of them, drawn when the file is read"));
   }
 
   /// Hash of everything that a run depends on, the maps' content included, see `content_hash`; not of names.

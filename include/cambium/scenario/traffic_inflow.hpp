@@ -177,8 +177,8 @@ class TrafficInflow {
                       detail::DescribedModel<typename WorldType::Observer>,
                   "cambium: a snapshot of a TrafficInflow holds the next agents; let the world's executions, vehicle "
                   "models and observers describe their parameters, see Described");
-    return parameter_list(parameter("rules", &P::rules_, "-", {}, "how agents enter"),
-                          parameter("queues", &P::queues_, "-", {}, "at the sources"));
+    return parameter_list(parameter("rules", &P::rules_, "how agents enter"),
+                          parameter("queues", &P::queues_, "at the sources"));
   }
 
   /// Throws `ParameterError` if the queues are those of other sources.
@@ -211,13 +211,13 @@ class TrafficInflow {
     static constexpr char const* name = "queue";
     static constexpr auto parameters() {
       using P = Queue;
-      return parameter_list(parameter("lane", &P::lane, "-", {}, "of its source"),
+      return parameter_list(parameter("lane", &P::lane, "of its source"),
                             parameter("way", &P::way, "m", any_finite, "of its source"),
                             parameter("per_hour", &P::per_hour, "1/h", positive, "demand; inf: saturated"),
-                            parameter("random", &P::random, "-", {}, "for arrivals and agents"),
+                            parameter("random", &P::random, "for arrivals and agents"),
                             parameter("arrival", &P::arrival, "s", any_finite, "of the next agent"),
                             parameter("waiting", &P::waiting, "-", Range{0, 1e9}, "agents without room"),
-                            parameter("next", &P::next, "-", {}, "the first of them"));
+                            parameter("next", &P::next, "the first of them"));
     }
   };
 

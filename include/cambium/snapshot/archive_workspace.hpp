@@ -66,8 +66,8 @@ struct ArchivedChoice {
   static constexpr auto parameters() {
     using P = ArchivedChoice;
     return parameter_list(parameter("came_by", &P::came_by, "-", Range{0, 65535}, "arm of the parent"),
-                          parameter("outcome", &P::outcome, "-", {}, "of the step that led here"),
-                          parameter("arms", &P::arms, "-", {}, "to choose from; none before the first choice"));
+                          parameter("outcome", &P::outcome, "of the step that led here"),
+                          parameter("arms", &P::arms, "to choose from; none before the first choice"));
   }
 };
 
@@ -82,7 +82,7 @@ struct ArchivedNode {
     return parameter_list(
         parameter("parent", &P::parent, "-", Range{0, no_node}, "a smaller number; of the root the largest there is"),
         parameter("visits", &P::visits, "-", Range{0, 4294967295.0}, "courses through it"),
-        parameter("agents", &P::agents, "-", {}, "those that choose, ego first"));
+        parameter("agents", &P::agents, "those that choose, ego first"));
   }
 };
 
@@ -96,9 +96,9 @@ struct ArchivedTree {
   static constexpr char const* name = "tree";
   static constexpr auto parameters() {
     using P = ArchivedTree;
-    return parameter_list(parameter("nodes", &P::nodes, "-", {}, "parents first"),
-                          parameter("states", &P::states, "-", {}, "of the nodes, level by level"),
-                          parameter("scales", &P::scales, "-", {}, "of the agents that choose"));
+    return parameter_list(parameter("nodes", &P::nodes, "parents first"),
+                          parameter("states", &P::states, "of the nodes, level by level"),
+                          parameter("scales", &P::scales, "of the agents that choose"));
   }
 };
 
@@ -119,14 +119,14 @@ struct ArchivedSearch {
   static constexpr char const* name = "search";
   static constexpr auto parameters() {
     using P = ArchivedSearch;
-    return parameter_list(parameter("world", &P::world, "-", {}, "in which it predicts"),
-                          parameter("slots", &P::slots, "-", {}, "of the agents that choose, ego first"),
-                          parameter("actions", &P::actions, "-", {}, "to choose from"),
-                          parameter("reward", &P::reward, "-", {}, "of each of them"),
+    return parameter_list(parameter("world", &P::world, "in which it predicts"),
+                          parameter("slots", &P::slots, "of the agents that choose, ego first"),
+                          parameter("actions", &P::actions, "to choose from"),
+                          parameter("reward", &P::reward, "of each of them"),
                           parameter("dt", &P::dt, "s", positive, "time step"),
                           parameter("cooperation", &P::cooperation, "-", Range{0, 1}, "weight of the others' rewards"),
-                          parameter("parameters", &P::parameters_of_search, "-", {}, "of the trees"),
-                          parameter("trees", &P::trees, "-", {}, "one a thread"));
+                          parameter("parameters", &P::parameters_of_search, "of the trees"),
+                          parameter("trees", &P::trees, "one a thread"));
   }
 };
 

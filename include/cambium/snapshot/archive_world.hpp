@@ -137,7 +137,7 @@ struct ArchivedRoad {
   static constexpr char const* name = "road";
   static constexpr auto parameters() {
     using P = ArchivedRoad;
-    return parameter_list(parameter("route", &P::route, "-", {}, "lanes in order; of a free corridor none"),
+    return parameter_list(parameter("route", &P::route, "lanes in order; of a free corridor none"),
                           parameter("way", &P::way, "m", any_finite, "points of a free corridor"),
                           parameter("width", &P::width, "m", non_negative, "of a free corridor"),
                           parameter("view", &P::view, "m", non_negative, "likewise"),
@@ -160,14 +160,14 @@ struct ArchivedAgent {
   static constexpr char const* name = "agent";
   static constexpr auto parameters() {
     using P = ArchivedAgent;
-    return parameter_list(parameter("id", &P::id, "-", {}, "its name"),
+    return parameter_list(parameter("id", &P::id, "its name"),
                           parameter("road", &P::road, "-", Range{0, 4294967295.0}, "number of its road"),
-                          parameter("shape", &P::shape, "-", {}, "its outline"),
-                          parameter("behavior", &P::behavior, "-", {}, "one of the world's behaviors"),
-                          parameter("execution", &P::execution, "-", {}, "how it tracks its plans"),
-                          parameter("dynamics", &P::dynamics, "-", {}, "the vehicle model"),
-                          parameter("observer", &P::observer, "-", {}, "how it sees the others"),
-                          parameter("goal", &P::goal, "-", {}, "where it wants to go"));
+                          parameter("shape", &P::shape, "its outline"),
+                          parameter("behavior", &P::behavior, "one of the world's behaviors"),
+                          parameter("execution", &P::execution, "how it tracks its plans"),
+                          parameter("dynamics", &P::dynamics, "the vehicle model"),
+                          parameter("observer", &P::observer, "how it sees the others"),
+                          parameter("goal", &P::goal, "where it wants to go"));
   }
 };
 
@@ -178,7 +178,7 @@ struct ArchivedObject {
   static constexpr char const* name = "object";
   static constexpr auto parameters() {
     using P = ArchivedObject;
-    return parameter_list(parameter("id", &P::id, "-", {}, "its name"),
+    return parameter_list(parameter("id", &P::id, "its name"),
                           parameter("outline", &P::outline, "m", any_finite, "corners"));
   }
 };
@@ -205,13 +205,13 @@ struct ArchivedWorld {
                           parameter("revision", &P::revision, "-", whole, "of its roster"),
                           parameter("next_agent_id", &P::next_agent_id, "-", whole, "of the next agent without one"),
                           parameter("next_object_id", &P::next_object_id, "-", whole, "of the next object"),
-                          parameter("largest_shape", &P::largest_shape, "-", {}, "holds those of all agents so far"),
+                          parameter("largest_shape", &P::largest_shape, "holds those of all agents so far"),
                           parameter("free_roads", &P::free_roads, "-", whole, "how many roads are free corridors"),
-                          parameter("roads", &P::roads, "-", {}, "of the agents; free corridors first"),
-                          parameter("agents", &P::agents, "-", {}, "who they are"),
-                          parameter("lights", &P::lights, "-", {}, "plans of the map's traffic lights"),
-                          parameter("objects", &P::objects, "-", {}, "that stand in the way"),
-                          parameter("frame", &P::frame, "-", {}, "time, and where the agents are"));
+                          parameter("roads", &P::roads, "of the agents; free corridors first"),
+                          parameter("agents", &P::agents, "who they are"),
+                          parameter("lights", &P::lights, "plans of the map's traffic lights"),
+                          parameter("objects", &P::objects, "that stand in the way"),
+                          parameter("frame", &P::frame, "time, and where the agents are"));
   }
 };
 

@@ -88,20 +88,20 @@ struct AgentSpecOf {
   static constexpr auto parameters() {
     using P = AgentSpecOf;
     auto const own = parameter_list(
-        parameter("id", &P::id, "-", {}, "a number; absent: the next free one"),
+        parameter("id", &P::id, "a number; absent: the next free one"),
         parameter("position", &P::position, "m", any_finite, "of the reference point"),
         parameter("heading", &P::heading, "rad", any_finite, "counter-clockwise from +x; absent: along the lane"),
         parameter("speed", &P::speed, "m/s", Range{-0.1, 1000}, "along the heading"),
         parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "as measured"),
-        parameter("shape", &P::shape, "-", {}, "default: a car"),
-        parameter("behavior", &P::behavior, "-", {}, "one of the world's behaviors"),
-        parameter("goal", &P::goal, "-", {}, "absent: none"),
-        parameter("route", &P::route, "-", {}, "absent: the shortest to the goal, straight on without one"),
+        parameter("shape", &P::shape, "default: a car"),
+        parameter("behavior", &P::behavior, "one of the world's behaviors"),
+        parameter("goal", &P::goal, "absent: none"),
+        parameter("route", &P::route, "absent: the shortest to the goal, straight on without one"),
         parameter("way", &P::way, "m", any_finite, "instead of a route: points of a way that is no lane, as on foot"));
     auto const models =
-        join_parameters(detail::if_described(parameter("execution", &P::execution, "-", {}, "how it tracks its plans")),
-                        detail::if_described(parameter("dynamics", &P::dynamics, "-", {}, "the vehicle model")));
-    auto const observer = detail::if_described(parameter("observer", &P::observer, "-", {}, "how it sees the others"));
+        join_parameters(detail::if_described(parameter("execution", &P::execution, "how it tracks its plans")),
+                        detail::if_described(parameter("dynamics", &P::dynamics, "the vehicle model")));
+    auto const observer = detail::if_described(parameter("observer", &P::observer, "how it sees the others"));
     return join_parameters(own, join_parameters(models, observer));
   }
 };

@@ -49,15 +49,14 @@ struct AgentRecord {
   static constexpr auto parameters() {
     using P = AgentRecord;
     return parameter_list(
-        parameter("state", &P::state, "-", {}, "where it is, and how fast"),
-        parameter("lane", &P::lane, "-", {}, "its place on its road"),
-        parameter("action", &P::action, "-", {}, "of the last step"),
-        parameter("memory", &P::memory, "-", {}, "what its behaviour remembers"),
+        parameter("state", &P::state, "where it is, and how fast"),
+        parameter("lane", &P::lane, "its place on its road"), parameter("action", &P::action, "of the last step"),
+        parameter("memory", &P::memory, "what its behaviour remembers"),
         choice("status", &P::status, "driving|not_started|arrived|off_route|left_map|expired|failed",
                "whether it takes part in traffic"),
         parameter("goals_passed", &P::goals_passed, "-", Range{0, 255}, "parts of its goal already reached"),
-        parameter("execution", &P::execution, "-", {}, "what its execution model remembers"),
-        parameter("past", &P::past, "-", {}, "for delayed observers"));
+        parameter("execution", &P::execution, "what its execution model remembers"),
+        parameter("past", &P::past, "for delayed observers"));
   }
 
   friend bool operator==(AgentRecord const&, AgentRecord const&) = default;
@@ -78,7 +77,7 @@ struct Frame {
     using P = Frame;
     return parameter_list(parameter("time", &P::time, "s", any_finite, "of the states"),
                           parameter("step", &P::step, "-", Range{0, 1.9e19}, "steps made since the world began"),
-                          parameter("agents", &P::agents, "-", {}, "their records, in the order of the roster"),
+                          parameter("agents", &P::agents, "their records, in the order of the roster"),
                           parameter("roster_revision", &P::roster_revision, "-", Range{0, 4294967295.0},
                                     "revision of the matching roster"));
   }

@@ -106,10 +106,10 @@ struct AdaptiveCruiseControl {
   static constexpr char const* source = "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6";
   static constexpr auto parameters() {
     using Self = AdaptiveCruiseControl;
-    return parameter_list(parameter("idm", &Self::idm, "-", {}, "the underlying car following"),
+    return parameter_list(parameter("idm", &Self::idm, "the underlying car following"),
                           parameter("coolness", &Self::coolness, "-", Range{0, 1},
                                     "0: IDM; 1: brakes no harder than the leader's acceleration requires"),
-                          parameter("rules", &Self::rules, "-", {}, "what it heeds besides other road users"));
+                          parameter("rules", &Self::rules, "what it heeds besides other road users"));
   }
 
   template <class View>

@@ -48,7 +48,7 @@ struct HeadwayHypotheses {
     static constexpr auto parameters() {
       using P = Memory;
       return parameter_list(parameter("time_headway", &P::time_headway, "s", any_finite, "assumed"),
-                            parameter("driver", &P::driver, "-", {}, "the driver's"));
+                            parameter("driver", &P::driver, "the driver's"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;
@@ -65,7 +65,7 @@ struct HeadwayHypotheses {
   static constexpr auto parameters() {
     using P = HeadwayHypotheses;
     return parameter_list(
-        parameter("driver", &P::driver, "-", {}, "everything except the time headway"),
+        parameter("driver", &P::driver, "everything except the time headway"),
         parameter("shortest_headway", &P::shortest_headway, "s", Range{0, 20}, "begin of the first region"),
         parameter("longest_headway", &P::longest_headway, "s", Range{0, 20}, "end of the last region"),
         parameter("regions", &P::regions, "-", Range{1, most_regions}, "number of regions"));

@@ -34,7 +34,7 @@ struct IdmClassic {
         idm_parameters<IdmClassic>(),
         parameter_list(parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
                                  "integration error in speed, per second"),
-                       parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds besides other road users")));
+                       parameter("rules", &IdmClassic::rules, "what it heeds besides other road users")));
   }
 
   template <class View>

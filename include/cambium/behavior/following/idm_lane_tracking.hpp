@@ -58,9 +58,9 @@ struct IdmLaneTracking {
   static constexpr auto parameters() {
     using Self = IdmLaneTracking;
     return parameter_list(
-        parameter("idm", &Self::idm, "-", {}, "the driver's car following"),
+        parameter("idm", &Self::idm, "the driver's car following"),
         parameter("coolness", &Self::coolness, "-", Range{0, 1}, "0: IDM; up to 1: as in the ACC model"),
-        parameter("rules", &Self::rules, "-", {}, "what it heeds besides other road users"),
+        parameter("rules", &Self::rules, "what it heeds besides other road users"),
         parameter("cross_track_gain", &Self::cross_track_gain, "1/s", Range{0, 20},
                   "rate at which an offset from the line decays"),
         parameter("softening_speed", &Self::softening_speed, "m/s", Range{0, 20}, "calms the steering at low speed"),

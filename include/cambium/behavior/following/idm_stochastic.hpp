@@ -30,7 +30,7 @@ struct Yielding {
       "suffices";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return parameter_list(parameter("enabled", &Yielding::enabled, "-", Range{0, 1}, "whether it ever lets others in"),
+    return parameter_list(parameter("enabled", &Yielding::enabled, "whether it ever lets others in"),
                           parameter("yields", &Yielding::yields, "s", {}, "duration of yielding, at least 0.1 s"),
                           parameter("insists", &Yielding::insists, "s", {}, "duration of insisting, at least 0.1 s"),
                           parameter("horizon", &Yielding::horizon, "m", Range{0, 10'000},
@@ -71,8 +71,8 @@ struct BasicIdmStochastic {
         parameter("minimum_gap", &Self::minimum_gap, "m", {}, "as in IDM"),
         parameter("maximum_acceleration", &Self::maximum_acceleration, "m/s^2", {}, "as in IDM"),
         parameter("comfortable_deceleration", &Self::comfortable_deceleration, "m/s^2", {}, "as in IDM"),
-        parameter("yielding", &Self::yielding, "-", {}, "when it lets others in"),
-        parameter("rules", &Self::rules, "-", {}, "what it heeds besides other road users"),
+        parameter("yielding", &Self::yielding, "when it lets others in"),
+        parameter("rules", &Self::rules, "what it heeds besides other road users"),
         parameter("exponent", &Self::exponent, "-", Range{1, 100}, "as in IDM"),
         parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, -0.01}, "as in IDM"),
         parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "as in IDM"),
@@ -93,8 +93,8 @@ struct BasicIdmStochastic {
       return parameter_list(parameter("person", &P::person, "-", Range{0, 4294967295.0},
                                       "key of the agent's own draws; 0: not drawn yet"),
                             parameter("left", &P::left, "s", any_finite, "of the current period"),
-                            parameter("yields", &P::yields, "-", Range{0, 1}, "to those who want in"),
-                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"));
+                            parameter("yields", &P::yields, "to those who want in"),
+                            parameter("rules", &P::rules, "what the rules of the road remember"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;

@@ -66,13 +66,13 @@ struct HumanDriver {
   static constexpr auto parameters() {
     using P = HumanDriver;
     return parameter_list(
-        parameter("nominal", &P::nominal, "-", {}, "the behaviour of this driver without its imperfections"),
+        parameter("nominal", &P::nominal, "the behaviour of this driver without its imperfections"),
         parameter("reaction_time", &P::reaction_time, "s", Range{0, 10}, "until a decision takes effect"),
         parameter("gap_error", &P::gap_error, "-", Range{0, 1}, "standard deviation of the gap's logarithm"),
         parameter("rate_error", &P::rate_error, "1/s", Range{0, 1},
                   "standard deviation of the approach rate, per metre of gap: of the inverse time to collision"),
         parameter("persistence", &P::persistence, "s", Range{0.01, 1e6}, "correlation time of these errors"),
-        parameter("anticipates", &P::anticipates, "-", Range{0, 1}, "decides for the situation a reaction time ahead"),
+        parameter("anticipates", &P::anticipates, "decides for the situation a reaction time ahead"),
         parameter("attentive", &P::attentive, "s", Range{0.1, 1e6}, "mean time until the driver looks away"),
         parameter("looks_away", &P::looks_away, "s", Range{0, 60}, "mean time for which it does; 0: never"));
   }
@@ -95,14 +95,14 @@ struct HumanDriver {
     static constexpr char const* name = "human_driver_memory";
     static constexpr auto parameters() {
       using P = Memory;
-      return parameter_list(parameter("nominal", &P::nominal, "-", {}, "the nominal driver's"),
+      return parameter_list(parameter("nominal", &P::nominal, "the nominal driver's"),
                             parameter("decided", &P::decided, "m/s^2", any_finite, "accelerations, latest first"),
                             parameter("age", &P::age, "s", any_finite, "of the latest"),
                             parameter("speed", &P::speed, "m/s", any_finite, "own, before the last step"),
                             parameter("gap_error", &P::gap_error, "-", any_finite, "process of the error in gaps"),
                             parameter("rate_error", &P::rate_error, "-", any_finite, "likewise in rates"),
-                            parameter("has_begun", &P::has_begun, "-", Range{0, 1}, "it has driven a step"),
-                            parameter("looks_away", &P::looks_away, "-", Range{0, 1}, "from the road"));
+                            parameter("has_begun", &P::has_begun, "it has driven a step"),
+                            parameter("looks_away", &P::looks_away, "from the road"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;

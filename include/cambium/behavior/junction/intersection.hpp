@@ -67,8 +67,8 @@ struct Intersection {
   static constexpr auto parameters() {
     using P = Intersection;
     return parameter_list(
-        parameter("idm", &P::idm, "-", {}, "car following"),
-        parameter("rules", &P::rules, "-", {}, "what it heeds besides other road users"),
+        parameter("idm", &P::idm, "car following"),
+        parameter("rules", &P::rules, "what it heeds besides other road users"),
         parameter("look_ahead", &P::look_ahead, "m", Range{0, 1000},
                   "conflicts within this distance, or within the comfortable braking distance, count"),
         parameter("time_margin", &P::time_margin, "s", Range{0, 20}, "between two vehicles in one place"),
@@ -78,7 +78,7 @@ struct Intersection {
             "patience", &P::patience, "s", Range{0, 600},
             "a driver that has stood for this time goes before those that stopped later where nobody has priority; "
             "after up to 58 s more, by its id, before any other one that stands"),
-        parameter("keep_clear", &P::keep_clear, "-", Range{0, 1}, "do not stop within the junction"),
+        parameter("keep_clear", &P::keep_clear, "do not stop within the junction"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
 
@@ -93,8 +93,8 @@ struct Intersection {
     static constexpr auto parameters() {
       using P = Memory;
       return parameter_list(parameter("waited", &P::waited, "s", any_finite, "at a standstill before a junction"),
-                            parameter("stopped_before", &P::stopped_before, "-", {}, "those that stood there"),
-                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"));
+                            parameter("stopped_before", &P::stopped_before, "those that stood there"),
+                            parameter("rules", &P::rules, "what the rules of the road remember"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;

@@ -42,8 +42,8 @@ struct AllOf<First, Rest...> {
 
   static constexpr char const* name = "all_of";
   static constexpr auto parameters() {
-    return parameter_list(parameter("first", &AllOf::first, "-", {}, "the first condition"),
-                          parameter("rest", &AllOf::rest, "-", {}, "the further conditions"));
+    return parameter_list(parameter("first", &AllOf::first, "the first condition"),
+                          parameter("rest", &AllOf::rest, "the further conditions"));
   }
 
   template <class View>

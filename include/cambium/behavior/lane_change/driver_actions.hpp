@@ -53,9 +53,9 @@ struct DriverActions {
     static constexpr char const* name = "driver_actions_memory";
     static constexpr auto parameters() {
       using P = Memory;
-      return parameter_list(parameter("macro", &P::macro, "-", {}, "the macro action under way"),
-                            parameter("driver", &P::driver, "-", {}, "the driver's"),
-                            parameter("drives", &P::drives, "-", Range{0, 1}, "as the driver does"));
+      return parameter_list(parameter("macro", &P::macro, "the macro action under way"),
+                            parameter("driver", &P::driver, "the driver's"),
+                            parameter("drives", &P::drives, "as the driver does"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;
@@ -69,8 +69,8 @@ struct DriverActions {
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = DriverActions;
-    return parameter_list(parameter("macro", &P::macro, "-", {}, "the macro actions to choose from"),
-                          parameter("driver", &P::driver, "-", {}, "who drives otherwise"));
+    return parameter_list(parameter("macro", &P::macro, "the macro actions to choose from"),
+                          parameter("driver", &P::driver, "who drives otherwise"));
   }
 
   template <class View>

@@ -29,8 +29,8 @@ struct IdmProposal {
       using P = Memory;
       return parameter_list(parameter("speed_share", &P::speed_share, "-", any_finite, "of the driver's desired speed"),
                             parameter("offset", &P::offset, "m", any_finite, "from the middle of the lane"),
-                            parameter("towards", &P::towards, "-", {}, "lane corridor into which it changes"),
-                            parameter("lane", &P::lane, "-", {}, "of the driver's lane changes"));
+                            parameter("towards", &P::towards, "lane corridor into which it changes"),
+                            parameter("lane", &P::lane, "of the driver's lane changes"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;
@@ -48,9 +48,9 @@ struct IdmProposal {
   static constexpr auto parameters() {
     using P = IdmProposal;
     return parameter_list(
-        parameter("driver", &P::driver, "-", {}, "its car following"),
+        parameter("driver", &P::driver, "its car following"),
         parameter("clearance", &P::clearance, "m", Range{0, 5}, "to each side of the road users that it passes"),
-        parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"));
+        parameter("changing", &P::changing, "how it changes lanes, and what it assumes of others"));
   }
 
   template <class View>

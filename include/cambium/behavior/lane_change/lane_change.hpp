@@ -49,7 +49,7 @@ struct LaneChange {
   static constexpr char const* name = "lane_change";
   static constexpr auto parameters() {
     using P = LaneChange;
-    return parameter_list(parameter("target", &P::target, "-", {}, "lane corridor that it leads to"),
+    return parameter_list(parameter("target", &P::target, "lane corridor that it leads to"),
                           parameter("left", &P::left, "m", any_finite, "remaining length"),
                           parameter("bend", &P::bend, "1/m", any_finite, "of its course at the vehicle"));
   }

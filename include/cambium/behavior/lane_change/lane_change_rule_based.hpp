@@ -36,10 +36,10 @@ struct LaneChangeRuleBased {
   static constexpr auto parameters() {
     using P = LaneChangeRuleBased;
     return parameter_list(
-        parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
-        parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
-        parameter("rules", &P::rules, "-", {}, "what it heeds besides other road users"),
-        parameter("space", &P::space, "-", {}, "what must be free in the new lane"),
+        parameter("idm", &P::idm, "the driver's own car following"),
+        parameter("changing", &P::changing, "how it changes lanes, and what it assumes of others"),
+        parameter("rules", &P::rules, "what it heeds besides other road users"),
+        parameter("space", &P::space, "what must be free in the new lane"),
         parameter(
             "minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
             "length of the new lane that must remain after changing there and back, unless the route needs the change"),

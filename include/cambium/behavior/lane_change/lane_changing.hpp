@@ -72,18 +72,18 @@ struct LaneChanging {
   static constexpr auto parameters() {
     using P = LaneChanging;
     return parameter_list(
-        parameter("others", &P::others, "-", {}, "what it assumes of other drivers"),
-        parameter("trucks", &P::trucks, "-", {}, "what it assumes of drivers of long vehicles"),
+        parameter("others", &P::others, "what it assumes of other drivers"),
+        parameter("trucks", &P::trucks, "what it assumes of drivers of long vehicles"),
         parameter("truck_length", &P::truck_length, "m", Range{0, 100}, "vehicles longer than this are trucks"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0, 20}, "nobody is made to brake harder"),
         parameter("abort_deceleration", &P::abort_deceleration, "m/s^2", Range{0, 20},
                   "a change is aborted if somebody would have to brake harder"),
         parameter("safe_gap", &P::safe_gap, "m", Range{0, 100}, "smallest gap for a change, whatever the speeds"),
         parameter("rest", &P::rest, "s", Range{0, 600}, "from the end of a change to the next one"),
-        parameter("heed_marks", &P::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
-        parameter("leaves_room", &P::leaves_room, "-", Range{0, 1},
+        parameter("heed_marks", &P::heed_marks, "change only where the road marks permit it"),
+        parameter("leaves_room", &P::leaves_room,
                   "stays far enough behind those who stand that a change fits, see `LaneChangeCourse::leave_room`"),
-        parameter("course", &P::course, "-", {}, "how long a change takes"));
+        parameter("course", &P::course, "how long a change takes"));
   }
 
   /// What the driver remembers.
@@ -98,9 +98,9 @@ struct LaneChanging {
     static constexpr char const* name = "lane_changing_memory";
     static constexpr auto parameters() {
       using P = Memory;
-      return parameter_list(parameter("change", &P::change, "-", {}, "the change under way"),
+      return parameter_list(parameter("change", &P::change, "the change under way"),
                             parameter("rest", &P::rest, "s", any_finite, "until the next change may begin"),
-                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"));
+                            parameter("rules", &P::rules, "what the rules of the road remember"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;

@@ -41,7 +41,7 @@ struct MacroAction {
     using P = MacroAction;
     return parameter_list(choice("kind", &P::kind, "stay|change_left|change_right|keep_gap", "the manoeuvre"),
                           parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "ignored by keep_gap"),
-                          parameter("keeps_gap", &P::keeps_gap, "-", Range{0, 1}, "no faster than IDM permits"));
+                          parameter("keeps_gap", &P::keeps_gap, "no faster than IDM permits"));
   }
 
   friend bool operator==(MacroAction const&, MacroAction const&) = default;
@@ -90,10 +90,10 @@ struct MacroActions {
     static constexpr char const* name = "macro_actions_memory";
     static constexpr auto parameters() {
       using P = Memory;
-      return parameter_list(parameter("change", &P::change, "-", {}, "towards the target corridor"),
-                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"),
+      return parameter_list(parameter("change", &P::change, "towards the target corridor"),
+                            parameter("rules", &P::rules, "what the rules of the road remember"),
                             parameter("chosen", &P::chosen, "-", Range{0, 255}, "number of the action"),
-                            parameter("is_new", &P::is_new, "-", Range{0, 1}, "it has not begun yet"));
+                            parameter("is_new", &P::is_new, "it has not begun yet"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;
@@ -121,14 +121,14 @@ struct MacroActions {
   static constexpr auto parameters() {
     using P = MacroActions;
     return parameter_list(
-        parameter("actions", &P::actions, "-", {}, "the actions to choose from, 1 to 16"),
+        parameter("actions", &P::actions, "the actions to choose from, 1 to 16"),
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "limit when accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
                   "no change into a lane that ends, or begins to merge into its neighbour, within this distance; "
                   "longer vehicles need more, as in their course"),
-        parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
-        parameter("rules", &P::rules, "-", {}, "what each action heeds besides other road users"),
-        parameter("course", &P::course, "-", {}, "how long a change takes"),
+        parameter("idm", &P::idm, "how gaps are kept"),
+        parameter("rules", &P::rules, "what each action heeds besides other road users"),
+        parameter("course", &P::course, "how long a change takes"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
 

@@ -73,14 +73,14 @@ struct BasicMobil {
   static constexpr auto parameters() {
     using P = BasicMobil;
     auto const own = parameter_list(
-        parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
-        parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
-        parameter("rules", &P::rules, "-", {}, "what it heeds besides other road users"),
+        parameter("idm", &P::idm, "the driver's own car following"),
+        parameter("changing", &P::changing, "how it changes lanes, and what it assumes of others"),
+        parameter("rules", &P::rules, "what it heeds besides other road users"),
         parameter("politeness", &P::politeness, "-", Range{-1, 10}, "weight of the followers' accelerations"),
         parameter("threshold", &P::threshold, "m/s^2", Range{0, 10}, "advantage that makes a change worthwhile"),
         parameter("bias", &P::bias, "m/s^2", Range{-10, 10},
                   "in favour of the outer lane (right; in left-hand traffic left); negative: of the inner lane"),
-        parameter("keep_right", &P::keep_right, "-", Range{0, 1},
+        parameter("keep_right", &P::keep_right,
                   "European rule: no passing on the outer side above critical_speed (eq. 5 to 7)"),
         parameter("critical_speed", &P::critical_speed, "m/s", Range{0, 100},
                   "below it, in congestion, keep_right permits passing on the outer side"),
@@ -93,7 +93,7 @@ struct BasicMobil {
             "length of the new lane that must remain after changing there and back, unless the route needs the change"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
     if constexpr (sizeof...(Filters) > 0)
-      return join_parameters(own, parameter_list(parameter("filters", &P::filters, "-", {}, "further conditions")));
+      return join_parameters(own, parameter_list(parameter("filters", &P::filters, "further conditions")));
     else
       return own;
   }

@@ -21,7 +21,7 @@ struct RandomMacroActions {
   static constexpr char const* summary = "one of the available macro actions every interval, with equal probability";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return parameter_list(parameter("macro", &RandomMacroActions::macro, "-", {}, "the actions"),
+    return parameter_list(parameter("macro", &RandomMacroActions::macro, "the actions"),
                           parameter("interval", &RandomMacroActions::interval, "s", Range{0, 3600},
                                     "time until the next choice; 0: each step"));
   }
@@ -36,7 +36,7 @@ struct RandomMacroActions {
     static constexpr char const* name = "random_macro_actions_memory";
     static constexpr auto parameters() {
       using P = Memory;
-      return parameter_list(parameter("macro", &P::macro, "-", {}, "the macro action under way"),
+      return parameter_list(parameter("macro", &P::macro, "the macro action under way"),
                             parameter("left", &P::left, "s", any_finite, "until the next choice"));
     }
 

@@ -39,8 +39,8 @@ struct ZipMerge {
   static constexpr auto parameters() {
     using P = ZipMerge;
     return parameter_list(
-        parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
-        parameter("rules", &P::rules, "-", {}, "what it heeds besides other road users"),
+        parameter("idm", &P::idm, "the driver's own car following"),
+        parameter("rules", &P::rules, "what it heeds besides other road users"),
         parameter("zone", &P::zone, "m", Range{1, 400}, "distance before a merge at which it begins to give way"),
         parameter("reach", &P::reach, "m", Range{0, 100}, "how far behind a vehicle may be and still be let in"),
         parameter("patience", &P::patience, "s", Range{0, 600},
@@ -61,10 +61,10 @@ struct ZipMerge {
     static constexpr char const* name = "zip_merge_memory";
     static constexpr auto parameters() {
       using P = Memory;
-      return parameter_list(parameter("ahead", &P::ahead, "-", {}, "the last leader in the own lane before the merge"),
+      return parameter_list(parameter("ahead", &P::ahead, "the last leader in the own lane before the merge"),
                             parameter("stood", &P::stood, "s", any_finite, "at a standstill"),
                             parameter("bend", &P::bend, "1/m", any_finite, "of its course"),
-                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"));
+                            parameter("rules", &P::rules, "what the rules of the road remember"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;

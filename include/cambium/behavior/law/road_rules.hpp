@@ -106,11 +106,11 @@ struct RoadRules {
             "distance from the end at which braking begins; the default is too short to stop from above about 15 m/s"),
         parameter("lane_end_offset", &P::lane_end_offset, "m", Range{0, 1000},
                   "distance from the end at which it would stop"),
-        parameter("obey_speed_limits", &P::obey_speed_limits, "-", Range{0, 1},
+        parameter("obey_speed_limits", &P::obey_speed_limits,
                   "desire no more than the limit, and slow down in time for a lower one ahead"),
-        parameter("slow_for_bends", &P::slow_for_bends, "-", Range{0, 1}, "brake in time for bends"),
+        parameter("slow_for_bends", &P::slow_for_bends, "brake in time for bends"),
         parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50}, "highest in bends"),
-        parameter("obey_signals", &P::obey_signals, "-", Range{0, 1}, "stop at red lights and stop signs"),
+        parameter("obey_signals", &P::obey_signals, "stop at red lights and stop signs"),
         parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to a line where it waits"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
                   "a driver who would have to brake harder passes a light that has just turned yellow"),
@@ -130,7 +130,7 @@ struct RoadRules {
         parameter("crossing_time", &P::crossing_time, "s", Range{0, 60},
                   "brakes for agents on no lane, such as pedestrians, who will step into its way within this time; 0: "
                   "only for those in its lane"),
-        parameter("keep_to_side", &P::keep_to_side, "-", Range{0, 1},
+        parameter("keep_to_side", &P::keep_to_side,
                   "drive at the outer side of the lane (right; in left-hand traffic left), as cyclists do"),
         parameter("side_margin", &P::side_margin, "m", Range{0, 10}, "from the own side to the border there"));
   }
@@ -156,7 +156,7 @@ struct RoadRules {
           parameter("stopped_at", &P::stopped_at, "m", any_finite,
                     "corridor position of the stop sign at which it stopped last"),
           parameter("aside", &P::aside, "mm", Range{-32768, 32767}, "offset to the left to which it steers; 0: none"),
-          parameter("adrift", &P::adrift, "-", Range{0, 1}, "it may still move across its lane"));
+          parameter("adrift", &P::adrift, "it may still move across its lane"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;

@@ -64,7 +64,7 @@ struct MotionPrimitives {
   static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
     using P = MotionPrimitives;
-    return parameter_list(parameter("primitives", &P::primitives, "-", {}, "the inputs to choose from, 1 to 16"),
+    return parameter_list(parameter("primitives", &P::primitives, "the inputs to choose from, 1 to 16"),
                           choice("scheme", &P::scheme, "rk4|euler", "integration of the vehicle model"),
                           parameter("longest_substep", &P::longest_substep, "s", Range{1e-4, 10},
                                     "a step is integrated in equal parts, each at most this long"));

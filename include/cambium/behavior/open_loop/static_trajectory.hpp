@@ -30,7 +30,7 @@ struct StaticTrajectory {
       "replays recorded states with linear interpolation; enters and leaves traffic with its recording";
   static constexpr char const* source = "interpolation";
   static constexpr auto parameters() {
-    return parameter_list(parameter("states", &StaticTrajectory::states, "-", {}, "recorded, in order of time"));
+    return parameter_list(parameter("states", &StaticTrajectory::states, "recorded, in order of time"));
   }
 
   /// Throws `ParameterError` if there are no states or their times do not ascend.

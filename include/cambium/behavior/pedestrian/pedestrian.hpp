@@ -75,8 +75,7 @@ struct Pedestrian {
   static constexpr auto parameters() {
     using P = Pedestrian;
     return parameter_list(
-        parameter("social", &P::social, "-", {}, "forces"),
-        parameter("crossing", &P::crossing, "-", {}, "crossing lanes"),
+        parameter("social", &P::social, "forces"), parameter("crossing", &P::crossing, "crossing lanes"),
         parameter("body_radius", &P::body_radius, "m", Range{0, 5},
                   "of its body; 0.25 to 0.35 in Helbing, Farkas, Vicsek 2000"),
         parameter("look_ahead", &P::look_ahead, "m", Range{0.1, 50},

@@ -68,7 +68,7 @@ struct SocialForceParameters {
         parameter("repulsion_range", &P::repulsion_range, "m", Range{0.01, 100}, "sigma: of that potential"),
         parameter("stride_time", &P::stride_time, "s", Range{0, 100},
                   "duration of the other's stride that is kept clear"),
-        parameter("relative_stride", &P::relative_stride, "-", Range{0, 1},
+        parameter("relative_stride", &P::relative_stride,
                   "the stride is measured relative to the own motion, not over ground"),
         parameter("border_repulsion", &P::border_repulsion, "m^2/s^2", Range{0, 1000}, "U0: potential at a border"),
         parameter("border_range", &P::border_range, "m", Range{0.01, 100}, "R: of that potential"),

@@ -43,9 +43,8 @@ struct RssConformant {
       "response requires";
   static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017";
   static constexpr auto parameters() {
-    return parameter_list(
-        parameter("nominal", &RssConformant::nominal, "-", {}, "the behaviour when there is no danger"),
-        parameter("rss", &RssConformant::rss, "-", {}, "safe distances and the response"));
+    return parameter_list(parameter("nominal", &RssConformant::nominal, "the behaviour when there is no danger"),
+                          parameter("rss", &RssConformant::rss, "safe distances and the response"));
   }
 
   using Memory = MemoryOf<Nominal>;

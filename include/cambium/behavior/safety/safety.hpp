@@ -19,7 +19,7 @@ struct Safety {
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return parameter_list(parameter("deceleration", &Safety::deceleration, "m/s^2", Range{0.01, 50}, "of the braking"),
-                          parameter("course", &Safety::course, "-", {}, "how it steers to the middle of its lane"));
+                          parameter("course", &Safety::course, "how it steers to the middle of its lane"));
   }
 
   using Memory = LaneChange;

@@ -20,9 +20,7 @@ struct Constant {
 
   static constexpr char const* name = "constant";
   static constexpr char const* summary = "the same at every step";
-  static constexpr auto parameters() {
-    return parameter_list(parameter("value", &Constant::value, "-", Range{0, 1}, "what it says"));
-  }
+  static constexpr auto parameters() { return parameter_list(parameter("value", &Constant::value, "what it says")); }
 
   template <class World>
   [[nodiscard]] bool operator()(World const&, Slot) const {

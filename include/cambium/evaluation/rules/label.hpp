@@ -31,7 +31,7 @@ struct Exceeds {
   static constexpr char const* name = "exceeds";
   static constexpr char const* summary = "an evaluator's value is above a threshold";
   static constexpr auto parameters() {
-    return parameter_list(parameter("evaluator", &Exceeds::evaluator, "-", {}, "returns a number"),
+    return parameter_list(parameter("evaluator", &Exceeds::evaluator, "returns a number"),
                           parameter("threshold", &Exceeds::threshold, "-", any_finite, "in the unit of the evaluator"));
   }
 
@@ -49,7 +49,7 @@ struct OfOther {
   static constexpr char const* name = "of_other";
   static constexpr char const* summary = "a label of the other agent";
   static constexpr auto parameters() {
-    return parameter_list(parameter("label", &OfOther::label, "-", {}, "asked of the other agent"));
+    return parameter_list(parameter("label", &OfOther::label, "asked of the other agent"));
   }
 
   template <class World>

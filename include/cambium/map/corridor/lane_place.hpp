@@ -32,8 +32,8 @@ struct LanePlace {
         parameter("lateral", &P::lateral, "m", any_finite, "from the centre line, left positive"),
         parameter("heading_error", &P::heading_error, "rad", any_finite, "vehicle's heading minus the lane's"),
         parameter("segment", &P::segment, "-", Range{0, 4294967295.0}, "of the centre line: a hint"),
-        parameter("corridor", &P::corridor, "-", {}, "number of the lane corridor"),
-        parameter("piece", &P::piece, "-", {}, "number of its piece"));
+        parameter("corridor", &P::corridor, "number of the lane corridor"),
+        parameter("piece", &P::piece, "number of its piece"));
   }
 
   friend bool operator==(LanePlace const&, LanePlace const&) = default;

@@ -20,7 +20,7 @@ struct Route {
 
   static constexpr char const* name = "route";
   static constexpr auto parameters() {
-    return parameter_list(parameter("lanes", &Route::lanes, "-", {}, "in order"),
+    return parameter_list(parameter("lanes", &Route::lanes, "in order"),
                           parameter("length", &Route::length, "m", non_negative, "driven"),
                           parameter("cost", &Route::cost, "-", non_negative, "by the options it was found with"));
   }

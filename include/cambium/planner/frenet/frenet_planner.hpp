@@ -113,15 +113,15 @@ struct FrenetPlanner {
   static constexpr auto parameters() {
     using P = FrenetPlanner;
     return parameter_list(
-        parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+        parameter("others", &P::others, "how the others are expected to behave"),
         parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "on a free road"),
         parameter("speed_shares", &P::speed_shares, "-", Range{0, 2},
                   "shares of the desired speed that courses end with"),
         parameter("durations", &P::durations, "s", Range{0.5, 30},
                   "of the polynomials; then a course keeps its speed and offset"),
         parameter("offsets", &P::offsets, "m", Range{-10, 10}, "from the lane's middle, at which courses end"),
-        parameter("costs", &P::costs, "-", {}, "weights that make a course cheap"),
-        parameter("limits", &P::limits, "-", {}, "what makes a course valid"),
+        parameter("costs", &P::costs, "weights that make a course cheap"),
+        parameter("limits", &P::limits, "what makes a course valid"),
         parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "gap to a standing leader"),
         parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "additional gap to a moving leader"),
         parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "time for which courses are checked"),
@@ -134,8 +134,8 @@ struct FrenetPlanner {
                   "kept for each lane change still needed where it must stop before the end of a lane"),
         parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.1, 20},
                   "with which it comes to the end of a lane"),
-        parameter("budget", &P::budget, "-", {}, "how many courses are checked, the cheapest first"),
-        parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a course is deducted from its cost"));
+        parameter("budget", &P::budget, "how many courses are checked, the cheapest first"),
+        parameter("terms", &P::terms, "evaluators whose sum over a course is deducted from its cost"));
   }
 
   void check(std::string const& where) const {

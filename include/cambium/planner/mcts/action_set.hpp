@@ -35,7 +35,7 @@ struct SampledInputs {
         parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
         parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50}, "strongest acceleration"),
         parameter("largest_steering", &P::largest_steering, "rad", Range{0, 1.5}, "largest angle to either side"),
-        parameter("model", &P::model, "-", {}, "carries out the inputs"));
+        parameter("model", &P::model, "carries out the inputs"));
   }
 };
 

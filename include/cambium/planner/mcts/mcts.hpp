@@ -36,8 +36,8 @@ struct TrackedAgent {
   static constexpr char const* name = "tracked_agent";
   static constexpr auto parameters() {
     using P = TrackedAgent;
-    return parameter_list(parameter("id", &P::id, "-", {}, "whom it is about"),
-                          parameter("belief", &P::belief, "-", {}, "probabilities of the hypotheses"),
+    return parameter_list(parameter("id", &P::id, "whom it is about"),
+                          parameter("belief", &P::belief, "probabilities of the hypotheses"),
                           parameter("speed", &P::speed, "m/s", any_finite, "as last observed"),
                           parameter("expected", &P::expected, "m/s", any_finite, "next observed speed, by hypothesis"));
   }
@@ -82,10 +82,10 @@ struct BeliefMemory {
   static constexpr char const* name = "belief_memory";
   static constexpr auto parameters() {
     using P = BeliefMemory;
-    return parameter_list(parameter("tracked", &P::tracked, "-", {}, "the agents about whom it learns"),
+    return parameter_list(parameter("tracked", &P::tracked, "the agents about whom it learns"),
                           parameter("observed_at", &P::observed_at, "s", any_finite, "time of the observed speeds"),
                           parameter("expected_at", &P::expected_at, "s", any_finite, "time of the expected ones"),
-                          parameter("course", &P::course, "-", {}, "the manoeuvre under way"));
+                          parameter("course", &P::course, "the manoeuvre under way"));
   }
 
   friend bool operator==(BeliefMemory const&, BeliefMemory const&) = default;
@@ -151,19 +151,19 @@ struct Mcts {
   static constexpr auto parameters() {
     using P = Mcts;
     return parameter_list(
-        parameter("actions", &P::actions, "-", {}, "what ego and the agents that choose with it may do"),
-        parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+        parameter("actions", &P::actions, "what ego and the agents that choose with it may do"),
+        parameter("others", &P::others, "how the others are expected to behave"),
         parameter(
             "others_keep_speed", &P::others_keep_speed, "-", Range{0, 1},
             "those who drive faster than the others like, or steadily (if it learns about them: with nobody close "
             "ahead), or are on foot, are expected to like the speed they have"),
-        parameter("reward", &P::reward, "-", {}, "what ego and each agent that chooses with it wants"),
-        parameter("options", &P::options, "-", {}, "settings of the search"),
+        parameter("reward", &P::reward, "what ego and each agent that chooses with it wants"),
+        parameter("options", &P::options, "settings of the search"),
         parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "number of agents that choose, including ego"),
         parameter("range", &P::range, "m", non_negative, "agents farther away do not choose"),
         parameter("cooperation", &P::cooperation, "-", Range{0, 1},
                   "weight of the others' rewards and costs in an agent's own"),
-        parameter("belief", &P::belief, "-", {}, "how it learns about the others if there are hypotheses about them"));
+        parameter("belief", &P::belief, "how it learns about the others if there are hypotheses about them"));
   }
 
   void check(std::string const& where) const {

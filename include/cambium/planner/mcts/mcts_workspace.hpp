@@ -40,10 +40,10 @@ struct MctsOptions {
   static constexpr char const* summary = "settings of a tree search in traffic";
   static constexpr auto parameters() {
     using P = MctsOptions;
-    return parameter_list(parameter("search", &P::search, "-", {}, "the tree"),
-                          parameter("budget", &P::budget, "-", {}, "how long the tree grows"),
-                          parameter("selection", &P::selection, "-", {}, "how agents choose at the nodes"),
-                          parameter("rollout", &P::rollout, "-", {}, "how courses continue from the leaves"),
+    return parameter_list(parameter("search", &P::search, "the tree"),
+                          parameter("budget", &P::budget, "how long the tree grows"),
+                          parameter("selection", &P::selection, "how agents choose at the nodes"),
+                          parameter("rollout", &P::rollout, "how courses continue from the leaves"),
                           parameter("step", &P::step, "s", Range{0.01, 10}, "time step of the predictions"),
                           parameter("hold", &P::hold, "-", Range{1, 1000},
                                     "steps for which an action is kept: between two decisions of the tree"),

@@ -61,8 +61,8 @@ class TrafficDomain {
 
     static constexpr char const* name = "traffic_state";
     static constexpr auto parameters() {
-      return parameter_list(parameter("frame", &State::frame, "-", {}, "time, and where the agents are"),
-                            parameter("over", &State::over, "-", Range{0, 1}, "a course has ended"));
+      return parameter_list(parameter("frame", &State::frame, "time, and where the agents are"),
+                            parameter("over", &State::over, "a course has ended"));
     }
   };
 

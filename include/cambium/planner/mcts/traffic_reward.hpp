@@ -82,7 +82,7 @@ struct TrafficReward {
         parameter("off_road", &P::off_road, "-", any_finite,
                   "for leaving the road or the route, or driving in an oncoming lane, which ends the course, besides "
                   "its cost of 1; the end of the map does not count"),
-        parameter("heeds_road", &P::heeds_road, "-", Range{0, 1},
+        parameter("heeds_road", &P::heeds_road,
                   "whether leaving the road, or driving in an oncoming lane, ends the course"),
         parameter("progress", &P::progress, "1/m", any_finite, "per metre along the lane"),
         parameter("speed_deviation", &P::speed_deviation, "1/m", any_finite,
@@ -150,8 +150,8 @@ struct Reward {
 
   static constexpr char const* name = "reward";
   static constexpr auto parameters() {
-    return parameter_list(parameter("traffic", &Reward::traffic, "-", {}, "what every search in traffic needs"),
-                          parameter("terms", &Reward::terms, "-", {}, "one for each evaluator"));
+    return parameter_list(parameter("traffic", &Reward::traffic, "what every search in traffic needs"),
+                          parameter("terms", &Reward::terms, "one for each evaluator"));
   }
 
   /// The term of evaluator `E`.

@@ -95,18 +95,18 @@ struct PolicyTreePlanner {
   static constexpr auto parameters() {
     using P = PolicyTreePlanner;
     return parameter_list(
-        parameter("actions", &P::actions, "-", {}, "what ego may do"),
-        parameter("others", &P::others, "-", {}, "how the others keep gaps, or drive"),
-        parameter("intentions", &P::intentions, "-", {}, "what the others may be about to do"),
-        parameter("weights", &P::weights, "-", {}, "what makes a sequence good"),
+        parameter("actions", &P::actions, "what ego may do"),
+        parameter("others", &P::others, "how the others keep gaps, or drive"),
+        parameter("intentions", &P::intentions, "what the others may be about to do"),
+        parameter("weights", &P::weights, "what makes a sequence good"),
         parameter("layers", &P::layers, "-", Range{1, 32}, "decisions in a sequence"),
         parameter("layer_duration", &P::layer_duration, "s", Range{0.1, 20}, "time between decisions"),
         parameter("step", &P::step, "s", Range{0.01, 1}, "time step of the simulations"),
         parameter("most_agents", &P::most_agents, "-", Range{0, 32},
                   "number of nearest others whose intentions are simulated"),
         parameter("range", &P::range, "m", non_negative, "agents farther away keep their lanes"),
-        parameter("budget", &P::budget, "-", {}, "how many sequences are simulated, the ongoing action first"),
-        parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a sequence is deducted from its cost"));
+        parameter("budget", &P::budget, "how many sequences are simulated, the ongoing action first"),
+        parameter("terms", &P::terms, "evaluators whose sum over a sequence is deducted from its cost"));
   }
 
   void check(std::string const& where) const { detail::refuse_costs(terms, where); }

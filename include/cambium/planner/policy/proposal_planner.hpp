@@ -150,22 +150,21 @@ struct ProposalPlanner {
   static constexpr auto parameters() {
     using P = ProposalPlanner;
     return parameter_list(
-        parameter("driver", &P::driver, "-", {}, "the driver that is simulated"),
-        parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+        parameter("driver", &P::driver, "the driver that is simulated"),
+        parameter("others", &P::others, "how the others are expected to behave"),
         parameter("speed_shares", &P::speed_shares, "-", Range{0, 2},
                   "shares of the desired speed, in order of preference"),
         parameter("offsets", &P::offsets, "m", Range{-10, 10}, "from the lane's middle, in order of preference"),
-        parameter("scoring", &P::scoring, "-", {}, "what makes a proposal good"),
+        parameter("scoring", &P::scoring, "what makes a proposal good"),
         parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "duration of the simulations"),
         parameter("step", &P::step, "s", Range{0.01, 1}, "time step of the simulations"),
         parameter("emergency_time", &P::emergency_time, "s", non_negative,
                   "it brakes if the best proposal fails sooner than this"),
         parameter("emergency_deceleration", &P::emergency_deceleration, "m/s^2", Range{0.01, 50},
                   "with which it then brakes"),
-        parameter("lane_changes", &P::lane_changes, "-", Range{0, 1},
-                  "also proposes to change into the lanes beside, at each speed"),
-        parameter("budget", &P::budget, "-", {}, "how many proposals are simulated, in order of preference"),
-        parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a proposal is added to its score"));
+        parameter("lane_changes", &P::lane_changes, "also proposes to change into the lanes beside, at each speed"),
+        parameter("budget", &P::budget, "how many proposals are simulated, in order of preference"),
+        parameter("terms", &P::terms, "evaluators whose sum over a proposal is added to its score"));
   }
 
   void check(std::string const& where) const {

@@ -132,7 +132,7 @@ struct TruncatedRollout {
   static constexpr char const* name = "truncated_rollout";
   static constexpr char const* summary = "the first steps of another roll-out, then the domain's value";
   static constexpr auto parameters() {
-    return parameter_list(parameter("base", &TruncatedRollout::base, "-", {}, "the roll-out, and its number of steps"));
+    return parameter_list(parameter("base", &TruncatedRollout::base, "the roll-out, and its number of steps"));
   }
 
   template <class Run>

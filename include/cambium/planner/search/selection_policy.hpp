@@ -34,8 +34,8 @@ struct Arm {
     if constexpr (std::is_empty_v<Statistics>)
       return totals;
     else
-      return join_parameters(
-          totals, parameter_list(parameter("statistics", &Arm::statistics, "-", {}, "of the selection policy")));
+      return join_parameters(totals,
+                             parameter_list(parameter("statistics", &Arm::statistics, "of the selection policy")));
   }
 
   [[nodiscard]] double mean_return() const { return visits > 0 ? total_return / visits : 0.0; }

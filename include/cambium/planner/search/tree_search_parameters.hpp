@@ -118,10 +118,10 @@ struct TreeSearchParameters {
                   "arrays briefly take more while they grow"),
         choice("final_move", &P::final_move, "most_visits|best_return|lower_bound",
                "how the move is chosen at the end"),
-        parameter("action_widening", &P::action_widening, "-", {}, "number of actions tried from a continuum"),
-        parameter("outcome_widening", &P::outcome_widening, "-", {},
+        parameter("action_widening", &P::action_widening, "number of actions tried from a continuum"),
+        parameter("outcome_widening", &P::outcome_widening,
                   "number of outcomes of the same actions that become nodes, if steps are random"),
-        parameter("constraint", &P::constraint, "-", {}, "what costs count for beside returns, and a limit on them"));
+        parameter("constraint", &P::constraint, "what costs count for beside returns, and a limit on them"));
   }
 
   /// Throws `ParameterError` if the bounds of the returns are in the wrong order.

@@ -46,8 +46,8 @@ struct TrackTable {
     return parameter_list(
         parameter("time_unit", &P::time_unit, "s", positive, "the unit of the column of times, or of one frame"),
         parameter("length_unit", &P::length_unit, "m", positive, "the unit of places and sizes; of speeds, per second"),
-        parameter("mirrored", &P::mirrored, "-", Range{0, 1}, "y grows to the right of x, as in pictures"),
-        parameter("sideways", &P::sideways, "-", Range{0, 1}, "y is along the road and x to the right of it"),
+        parameter("mirrored", &P::mirrored, "y grows to the right of x, as in pictures"),
+        parameter("sideways", &P::sideways, "y is along the road and x to the right of it"),
         choice("anchor", &P::anchor, "middle|front_middle|corner", "which point of the body is given"));
   }
 };
