@@ -18,9 +18,9 @@
 #include <pugixml.hpp>
 
 #include "cambium/core/random.hpp"
-#include "cambium/map/build/build_map.hpp"
-#include "cambium/map/build/make_roads.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/build_map.hpp"
+#include "cambium/map/building/make_roads.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/lanes/road_lanes.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/writer.hpp"

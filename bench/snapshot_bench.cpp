@@ -16,7 +16,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/snapshot.hpp"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/build/map_builder.hpp"
-#include "cambium/map/build/polyline_roads.hpp"
+#include "cambium/map/building/map_builder.hpp"
+#include "cambium/map/building/polyline_roads.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/world/world.hpp"
 

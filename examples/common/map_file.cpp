@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
-#include "cambium/map/build/center_line_csv.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/center_line_csv.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/scenario/dataset/common_road.hpp"

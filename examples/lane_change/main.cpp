@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cambium/core/write_file.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 
 #include "../common/command_line.hpp"
 #include "../common/on_threads.hpp"

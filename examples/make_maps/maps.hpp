@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 
 /// cambium's own maps.
 namespace make_maps {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
-#include "cambium/map/build/build_map.hpp"
-#include "cambium/map/build/center_line_csv.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/build_map.hpp"
+#include "cambium/map/building/center_line_csv.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/document.hpp"
 

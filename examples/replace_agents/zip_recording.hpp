@@ -12,7 +12,7 @@
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/scenario/dataset/recorded_traffic.hpp"

@@ -1,6 +1,6 @@
 /// All rooms of cambium but what makes maps, pictures and pages: those headers are included by name, as
-/// cambium/map/opendrive.hpp (files; needs pugixml), cambium/map/build/map_builder.hpp (maps in code), cambium/viewer.hpp
-/// and cambium/benchmark.hpp (needs SQLite and nlohmann_json).
+/// cambium/map/opendrive.hpp (files; needs pugixml), cambium/map/building/map_builder.hpp (maps in code),
+/// cambium/viewer.hpp and cambium/benchmark.hpp (needs SQLite and nlohmann_json).
 #pragma once
 
 // First: it says which language and flags cambium needs.

@@ -12,7 +12,7 @@
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "cambium/cambium.hpp"
-#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/document.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/scenario/merging_site.hpp"

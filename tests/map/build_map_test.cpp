@@ -1,5 +1,5 @@
 // Documents that no reader has looked at.
-#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/building/build_map.hpp"
 
 #include <limits>
 #include <string>
@@ -11,7 +11,7 @@
 #include "../support/map_faults.hpp"
 #include "../support/map_use.hpp"
 #include "../support/maps.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/check.hpp"
 

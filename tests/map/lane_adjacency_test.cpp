@@ -1,4 +1,4 @@
-#include "cambium/map/build/lane_adjacency.hpp"
+#include "cambium/map/building/lane_adjacency.hpp"
 
 #include <cmath>
 #include <set>
@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build/make_roads.hpp"
+#include "cambium/map/building/make_roads.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 

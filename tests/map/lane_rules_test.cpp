@@ -7,8 +7,8 @@
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
-#include "cambium/map/build/build_map.hpp"
-#include "cambium/map/build/detail/split_roads.hpp"
+#include "cambium/map/building/build_map.hpp"
+#include "cambium/map/building/detail/split_roads.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 

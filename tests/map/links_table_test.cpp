@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 

@@ -1,4 +1,4 @@
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/check.hpp"
 #include "cambium/map/opendrive/writer.hpp"

@@ -14,7 +14,7 @@
 #include <doctest/doctest.h>
 
 #include "cambium/core/random.hpp"
-#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 

@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build/build_map.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/build_map.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/map_use.hpp"

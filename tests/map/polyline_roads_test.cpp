@@ -1,5 +1,5 @@
 // Lanes from points: through the builder to the map, and from tables.
-#include "cambium/map/build/polyline_roads.hpp"
+#include "cambium/map/building/polyline_roads.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build/center_line_csv.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/center_line_csv.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "lanes_by_hand.hpp"
 #include "../support/maps.hpp"
 

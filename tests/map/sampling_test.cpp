@@ -1,4 +1,4 @@
-#include "cambium/map/build/detail/section_sampler.hpp"
+#include "cambium/map/building/detail/section_sampler.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
 /// Documents that say the same in another way: mirrored, moved, with roads written from their other end.

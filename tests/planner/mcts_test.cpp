@@ -15,8 +15,8 @@
 
 #include "cambium/behavior/junction/intersection.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/build/map_builder.hpp"
-#include "cambium/map/build/polyline_roads.hpp"
+#include "cambium/map/building/map_builder.hpp"
+#include "cambium/map/building/polyline_roads.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"

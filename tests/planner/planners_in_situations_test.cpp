@@ -22,7 +22,7 @@
 #include "cambium/evaluation/off_road.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/road/curve_layout.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/planner/frenet/frenet_planner.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/planner/policy/policy_tree_planner.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"

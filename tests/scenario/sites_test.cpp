@@ -16,7 +16,7 @@
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/off_road.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/merging_site.hpp"

@@ -46,7 +46,7 @@ std::map<std::string, std::vector<std::string>> const optional_headers{
     {"sqlite3.h", {"cambium/benchmark"}}};
 
 /// Who makes maps brings what a map itself calls.
-bool makes_maps(std::string const& header) { return header == "cambium/map/build/build_map.hpp"; }
+bool makes_maps(std::string const& header) { return header == "cambium/map/building/build_map.hpp"; }
 
 /// The word after cambium/: "map" of both cambium/map.hpp and cambium/map/lanes/lane.hpp.
 std::string room_name(std::string const& header) {
@@ -228,15 +228,16 @@ TEST_CASE("the walk finds each kind of breach") {
         "cambium/core/a.hpp includes cambium/core/b.hpp, which does not exist");
   CHECK(only_breach({{"cambium/cellar/a.hpp", {}}}) == "cambium/cellar/a.hpp is in no room of the list");
   CHECK(only_breach({{"cambium/map/attic/a.hpp", {}}}) == "cambium/map/attic/a.hpp is in no family of its room");
-  CHECK(only_breach({{"cambium/map/lanes/a.hpp", {"cambium/map/build/b.hpp"}}, {"cambium/map/build/b.hpp", {}}}) ==
-        "cambium/map/lanes/a.hpp looks down in its room: cambium/map/build/b.hpp");
-  CHECK(only_breach({{"cambium/map/build/a.hpp", {"cambium/map/lanes/detail/b.hpp"}},
+  CHECK(
+      only_breach({{"cambium/map/lanes/a.hpp", {"cambium/map/building/b.hpp"}}, {"cambium/map/building/b.hpp", {}}}) ==
+      "cambium/map/lanes/a.hpp looks down in its room: cambium/map/building/b.hpp");
+  CHECK(only_breach({{"cambium/map/building/a.hpp", {"cambium/map/lanes/detail/b.hpp"}},
                      {"cambium/map/lanes/detail/b.hpp", {}}}) ==
-        "cambium/map/build/a.hpp looks into the detail of others: cambium/map/lanes/detail/b.hpp");
+        "cambium/map/building/a.hpp looks into the detail of others: cambium/map/lanes/detail/b.hpp");
   CHECK(only_breach({{"cambium/world/a.hpp", {"cambium/map/detail/b.hpp"}}, {"cambium/map/detail/b.hpp", {}}}) ==
         "cambium/world/a.hpp looks into the detail of others: cambium/map/detail/b.hpp");
   CHECK(find_breaches({{"cambium/map/map.hpp", {"cambium/map/lanes/detail/b.hpp"}},
-                       {"cambium/map/build/a.hpp", {"cambium/map/map.hpp", "cambium/map/detail/c.hpp"}},
+                       {"cambium/map/building/a.hpp", {"cambium/map/map.hpp", "cambium/map/detail/c.hpp"}},
                        {"cambium/map/detail/c.hpp", {}},
                        {"cambium/map/lanes/detail/b.hpp", {}}})
             .empty());

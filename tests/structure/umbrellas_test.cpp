@@ -63,7 +63,7 @@ bool needs_more(std::string const& header) {
                                     "scenario/scenario_file.hpp",
                                     "scenario/scenario_set.hpp",
                                     "scenario/traffic_inflow.hpp"};
-  return apart.contains(header) || header.starts_with("map/build/") || header.starts_with("map/opendrive/") ||
+  return apart.contains(header) || header.starts_with("map/building/") || header.starts_with("map/opendrive/") ||
          header.starts_with("map/lanelet/") || header.starts_with("scenario/dataset/") ||
          header.starts_with("evaluation/rules") || header.ends_with("_impl.hpp");
 }

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "corpus.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cambium/core/error.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/map.hpp"
 
 /// Maps for tests.

@@ -7,7 +7,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/detail/read_map_file.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive.hpp"

@@ -7,7 +7,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/routing/route.hpp"
 #include "cambium/scenario/ring_road.hpp"
 

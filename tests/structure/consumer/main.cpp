@@ -4,7 +4,7 @@
 #include <cambium/core/version.hpp>
 #include <cambium/geometry/pose.hpp>
 #ifdef CAMBIUM_COMPILED
-#include <cambium/map/build/map_builder.hpp>
+#include <cambium/map/building/map_builder.hpp>
 #endif
 
 int main() {

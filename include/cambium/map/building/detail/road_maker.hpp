@@ -11,7 +11,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/cubic.hpp"

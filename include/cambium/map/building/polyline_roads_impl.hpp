@@ -12,9 +12,9 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/build/detail/polyline_profiles.hpp"
-#include "cambium/map/build/polyline_roads.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/detail/polyline_profiles.hpp"
+#include "cambium/map/building/polyline_roads.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 

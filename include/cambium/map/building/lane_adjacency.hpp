@@ -32,5 +32,5 @@ struct LaneAdjacency {
 }  // namespace cambium::map
 
 #ifndef CAMBIUM_COMPILED
-#include "cambium/map/build/lane_adjacency_impl.hpp"
+#include "cambium/map/building/lane_adjacency_impl.hpp"
 #endif

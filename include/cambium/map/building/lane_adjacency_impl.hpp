@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
-#include "cambium/map/build/detail/road_links.hpp"
-#include "cambium/map/build/lane_adjacency.hpp"
+#include "cambium/map/building/detail/road_links.hpp"
+#include "cambium/map/building/lane_adjacency.hpp"
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/road.hpp"
 

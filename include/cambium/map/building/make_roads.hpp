@@ -15,5 +15,5 @@ namespace cambium::map {
 }  // namespace cambium::map
 
 #ifndef CAMBIUM_COMPILED
-#include "cambium/map/build/make_roads_impl.hpp"
+#include "cambium/map/building/make_roads_impl.hpp"
 #endif

@@ -6,7 +6,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
 namespace cambium::map {
@@ -29,5 +29,5 @@ namespace cambium::map {
 }  // namespace cambium::map
 
 #ifndef CAMBIUM_COMPILED
-#include "cambium/map/build/polyline_roads_impl.hpp"
+#include "cambium/map/building/polyline_roads_impl.hpp"
 #endif

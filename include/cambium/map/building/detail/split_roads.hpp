@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/detail/move_records.hpp"
 #include "cambium/map/opendrive/document.hpp"

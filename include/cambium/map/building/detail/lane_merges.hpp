@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
-#include "cambium/map/build/detail/lane_geometry.hpp"
-#include "cambium/map/build/detail/section_sampler.hpp"
+#include "cambium/map/building/detail/lane_geometry.hpp"
+#include "cambium/map/building/detail/section_sampler.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/map/build/detail/make_road.hpp"
-#include "cambium/map/build/make_roads.hpp"
+#include "cambium/map/building/detail/make_road.hpp"
+#include "cambium/map/building/make_roads.hpp"
 #include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/road.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/map/build/detail/document_index.hpp"
+#include "cambium/map/building/detail/document_index.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
 namespace cambium::map::detail {

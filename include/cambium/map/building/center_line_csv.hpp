@@ -6,7 +6,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
 namespace cambium::map {
@@ -43,5 +43,5 @@ struct CenterLine {
 }  // namespace cambium::map
 
 #ifndef CAMBIUM_COMPILED
-#include "cambium/map/build/center_line_csv_impl.hpp"
+#include "cambium/map/building/center_line_csv_impl.hpp"
 #endif

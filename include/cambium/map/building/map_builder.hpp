@@ -7,8 +7,8 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/build/detail/document_index.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/detail/document_index.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/curve_layout.hpp"
@@ -104,5 +104,5 @@ using map::MapBuilder;
 }  // namespace cambium
 
 #ifndef CAMBIUM_COMPILED
-#include "cambium/map/build/map_builder_impl.hpp"
+#include "cambium/map/building/map_builder_impl.hpp"
 #endif

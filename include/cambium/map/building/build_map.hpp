@@ -25,6 +25,6 @@ namespace cambium::map {
 }  // namespace cambium::map
 
 #ifndef CAMBIUM_COMPILED
-#include "cambium/map/build/build_map_impl.hpp"
+#include "cambium/map/building/build_map_impl.hpp"
 #include "cambium/map/map_impl.hpp"
 #endif

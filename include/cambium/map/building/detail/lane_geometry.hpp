@@ -11,7 +11,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/build/detail/section_sampler.hpp"
+#include "cambium/map/building/detail/section_sampler.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/road/road.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/map/build/detail/lane_links.hpp"
-#include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/building/detail/lane_links.hpp"
+#include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/detail/network_check.hpp"
 #include "cambium/map/lanes/lane.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
-#include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane_network.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/lane_type.hpp"

@@ -67,5 +67,5 @@ struct RoadEnd {
 }  // namespace cambium::map
 
 #ifndef CAMBIUM_COMPILED
-#include "cambium/map/build/road_plan_impl.hpp"
+#include "cambium/map/building/road_plan_impl.hpp"
 #endif
