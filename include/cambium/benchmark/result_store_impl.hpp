@@ -43,18 +43,18 @@ inline constexpr char const* key_columns = "set_hash, scenario, behavior, parame
   return is_ours;
 }
 
-inline void bind(sqlite3_stmt* s, int at, std::string const& value) {
+inline void bind_value(sqlite3_stmt* s, int at, std::string const& value) {
   sqlite3_bind_text(s, at, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
 }
 
-inline void bind(sqlite3_stmt* s, int at, std::int64_t value) { sqlite3_bind_int64(s, at, value); }
+inline void bind_value(sqlite3_stmt* s, int at, std::int64_t value) { sqlite3_bind_int64(s, at, value); }
 
 inline int bind_key(sqlite3_stmt* s, ResultKey const& key) {
-  bind(s, 1, hash_text(key.set_hash));
-  bind(s, 2, key.scenario);
-  bind(s, 3, key.behavior);
-  bind(s, 4, hash_text(key.parameters_hash));
-  bind(s, 5, key.version);
+  bind_value(s, 1, hash_text(key.set_hash));
+  bind_value(s, 2, key.scenario);
+  bind_value(s, 3, key.behavior);
+  bind_value(s, 4, hash_text(key.parameters_hash));
+  bind_value(s, 5, key.version);
   return 6;
 }
 
@@ -88,13 +88,13 @@ inline void bind_fields(sqlite3_stmt* s, int& at, TypeInfo const& type, void con
     auto const& held = field.type();
     auto const* const place = field.in(object);
     if (held.kind == TypeInfo::Kind::text)
-      bind(s, at, *static_cast<std::string const*>(place));
+      bind_value(s, at, *static_cast<std::string const*>(place));
     else if (auto const value = PlainValue::at(place, held); held.is_real())
       sqlite3_bind_double(s, at, value.number);
     else if (value.is_id() && value.bits == PlainValue::highest(held).bits)
       sqlite3_bind_null(s, at);
     else
-      bind(s, at, static_cast<std::int64_t>(value.bits));
+      bind_value(s, at, static_cast<std::int64_t>(value.bits));
     ++at;
   }
 }
@@ -145,8 +145,8 @@ CAMBIUM_COLD ResultStore::~ResultStore() {
 
 CAMBIUM_COLD void ResultStore::begin_run(std::string const& started, std::string const& command) {
   auto statement = prepare("INSERT INTO runs(started, command) VALUES(?, ?)");
-  detail::bind(statement.get(), 1, started);
-  detail::bind(statement.get(), 2, command);
+  detail::bind_value(statement.get(), 1, started);
+  detail::bind_value(statement.get(), 2, command);
   step(statement.get());
   run_ = sqlite3_last_insert_rowid(db_.get());
 }
@@ -154,10 +154,10 @@ CAMBIUM_COLD void ResultStore::begin_run(std::string const& started, std::string
 CAMBIUM_COLD void ResultStore::add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios,
                                        std::string const& source) {
   auto statement = prepare("INSERT OR REPLACE INTO sets(set_hash, title, scenarios, source) VALUES(?, ?, ?, ?)");
-  detail::bind(statement.get(), 1, hash_text(hash));
-  detail::bind(statement.get(), 2, title);
-  detail::bind(statement.get(), 3, static_cast<std::int64_t>(scenarios));
-  detail::bind(statement.get(), 4, source.empty() ? source_of(hash) : source);
+  detail::bind_value(statement.get(), 1, hash_text(hash));
+  detail::bind_value(statement.get(), 2, title);
+  detail::bind_value(statement.get(), 3, static_cast<std::int64_t>(scenarios));
+  detail::bind_value(statement.get(), 4, source.empty() ? source_of(hash) : source);
   step(statement.get());
 }
 
@@ -165,10 +165,10 @@ CAMBIUM_COLD void ResultStore::add_behavior(std::string const& name, std::uint64
                                             std::string const& command) {
   auto statement =
       prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, command) VALUES(?, ?, ?, ?)");
-  detail::bind(statement.get(), 1, name);
-  detail::bind(statement.get(), 2, hash_text(hash));
-  detail::bind(statement.get(), 3, parameters);
-  detail::bind(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
+  detail::bind_value(statement.get(), 1, name);
+  detail::bind_value(statement.get(), 2, hash_text(hash));
+  detail::bind_value(statement.get(), 3, parameters);
+  detail::bind_value(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
   step(statement.get());
 }
 
@@ -183,8 +183,8 @@ CAMBIUM_COLD void ResultStore::add(ResultRow const& row) {
   if (!in_transaction_) execute("BEGIN");
   in_transaction_ = true;
   int at = detail::bind_key(add_result_.get(), row.key);
-  detail::bind(add_result_.get(), at++, std::to_string(row.seed));
-  detail::bind(add_result_.get(), at++, run_);
+  detail::bind_value(add_result_.get(), at++, std::to_string(row.seed));
+  detail::bind_value(add_result_.get(), at++, run_);
   detail::bind_fields(add_result_.get(), at, type_info<RunResult>(), &row.result);
   step(add_result_.get());
   at = detail::bind_key(add_times_.get(), row.key);
@@ -241,8 +241,8 @@ CAMBIUM_COLD void ResultStore::merge(ResultStore& other) {
     auto runs = other.prepare("SELECT run, started, command FROM runs");
     auto add_run = prepare("INSERT INTO runs(run, started, command) VALUES(?, ?, ?)");
     while (other.has_row(runs.get())) {
-      detail::bind(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
-      for (int const at : {1, 2}) detail::bind(add_run.get(), at + 1, detail::text(runs.get(), at));
+      detail::bind_value(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
+      for (int const at : {1, 2}) detail::bind_value(add_run.get(), at + 1, detail::text(runs.get(), at));
       step(add_run.get());
     }
     auto sets = other.prepare("SELECT set_hash, title, scenarios, source FROM sets");
@@ -343,22 +343,22 @@ CAMBIUM_COLD bool ResultStore::has_row(sqlite3_stmt* query) {
 
 CAMBIUM_COLD std::string ResultStore::of_set(std::string const& column, std::uint64_t set_hash) {
   auto statement = prepare("SELECT " + column + " FROM sets WHERE set_hash=?");
-  detail::bind(statement.get(), 1, hash_text(set_hash));
+  detail::bind_value(statement.get(), 1, hash_text(set_hash));
   return has_row(statement.get()) ? detail::text(statement.get(), 0) : std::string();
 }
 
 CAMBIUM_COLD std::string ResultStore::of_behavior(std::string const& column, std::string const& name,
                                                   std::uint64_t hash) {
   auto statement = prepare("SELECT " + column + " FROM behaviors WHERE behavior=? AND parameters_hash=?");
-  detail::bind(statement.get(), 1, name);
-  detail::bind(statement.get(), 2, hash_text(hash));
+  detail::bind_value(statement.get(), 1, name);
+  detail::bind_value(statement.get(), 2, hash_text(hash));
   return has_row(statement.get()) ? detail::text(statement.get(), 0) : std::string();
 }
 
 CAMBIUM_COLD void ResultStore::add_missing_column(std::string const& table, std::string const& column) {
   auto query = prepare("SELECT 1 FROM pragma_table_info(?) WHERE name=?");
-  detail::bind(query.get(), 1, table);
-  detail::bind(query.get(), 2, column.substr(0, column.find(' ')));
+  detail::bind_value(query.get(), 1, table);
+  detail::bind_value(query.get(), 2, column.substr(0, column.find(' ')));
   if (!has_row(query.get())) execute("ALTER TABLE " + table + " ADD COLUMN " + column);
 }
 
