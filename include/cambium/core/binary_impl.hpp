@@ -310,7 +310,7 @@ class FieldReader {
   }
 
   void count_copied(std::size_t bytes) {
-    constexpr std::size_t always = std::size_t{1} << 26, per_byte = 64;
+    constexpr std::size_t always = std::size_t{1} << 26, per_byte = 256;
     copied_ += bytes;
     if (copied_ > always + per_byte * read_)
       throw ParameterError(where_, "expands to far more memory than a file of its size should",

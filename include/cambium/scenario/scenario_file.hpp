@@ -18,8 +18,7 @@
 #include "cambium/scenario/detail/scenario_maps.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 
-/// Scenario sets as files: JSON to read and to exchange, or compact bytes for large sets, without the
-/// names of fields. A file names maps by their path and lanes as "road/section/lane"; behaviours and other
+/// Scenario sets as files: JSON to read and to exchange, or compact bytes for large sets. A file names maps by their path and lanes as "road/section/lane"; behaviours and other
 /// models by the names of the alternatives that the program's `World` has.
 ///
 ///   {"format": 1, "scenarios": [
@@ -143,7 +142,7 @@ template <class WorldType>
   return to_json(written, JsonDetail::differences, &lanes);
 }
 
-/// The set as bytes, a third of the JSON text. Throws as `to_json_text`.
+/// The set as bytes, a tenth of the JSON text. Throws as `to_json_text`.
 template <class WorldType>
 [[nodiscard]] std::string to_bytes(ScenarioSet<WorldType> const& set) {
   detail::LaneTable lanes;
