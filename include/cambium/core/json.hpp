@@ -1,15 +1,12 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <utility>
 
-#include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/json_document.hpp"
 #include "cambium/core/parameters.hpp"
-#include "cambium/core/read_file.hpp"
 #include "cambium/core/type_info.hpp"
 
 /// Described structs as JSON: parameters, scenarios, scenario sets. Needs nlohmann_json (`cambium::json`).
@@ -75,12 +72,6 @@ template <Described T>
   T object{};
   read_json(object, text, where, lanes);
   return object;
-}
-
-/// A struct from a JSON file. Throws as `read_json`, and `Error` if the file cannot be read.
-template <Described T>
-[[nodiscard]] T from_json_file(std::filesystem::path const& path) {
-  return from_json<T>(read_file<Error>(path.string(), {.expected = "give a JSON file"}), path.string());
 }
 
 }  // namespace cambium

@@ -12,7 +12,10 @@
 #include <vector>
 
 #include "cambium/core/binary.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/json.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/read_file.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/scenario/detail/scenario_maps.hpp"
