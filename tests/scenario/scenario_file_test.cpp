@@ -1,4 +1,5 @@
 #include <cambium/cambium.hpp>
+#include <cambium/core/read_file.hpp>
 #include <cambium/scenario/highway_site.hpp>
 #include <cambium/scenario/junction_site.hpp>
 #include <cambium/scenario/merging_site.hpp>
