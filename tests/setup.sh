@@ -153,6 +153,15 @@ check_owner() {
   fi
 }
 
+# check_compiler: a build folder keeps its compiler, whatever CXX says later.
+check_compiler() {
+  local own wanted
+  own=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt" 2>/dev/null) || true
+  if [[ -z $own || -z ${CXX:-} || $CXX == *" "* ]]; then return; fi
+  wanted=$(command -v "$CXX" || echo "$CXX")
+  if [[ $wanted != "$own" ]]; then fail "$build compiles with $own, but CXX is $CXX: unset CXX, or remove that folder"; fi
+}
+
 cache_says() { grep -qxF "$1" "$build/CMakeCache.txt" 2>/dev/null; }
 
 # is_configured PART: build/ is this checkout's, optimised, and has PART (TESTS, BENCH or EXAMPLES) on.
@@ -166,6 +175,7 @@ configure() {
   local part=$1
   shift
   check_owner
+  check_compiler
   if is_configured "$part"; then return; fi
   ensure_packages "$@"
   need_compiler
