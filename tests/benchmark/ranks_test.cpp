@@ -77,7 +77,7 @@ TEST_CASE("outcomes are the same after a message, bit by bit") {
   JobOutcome outcome;
   outcome.result.success = true;
   outcome.result.error = std::string("a\0b, \xC3\xA4", 7);
-  outcome.result.steps = -3;
+  outcome.result.steps = 3;
   outcome.result.mean_speed = 0.1 + 0.2;
   outcome.result.progress_m = -0.0;
   outcome.result.hit = AgentId{7};

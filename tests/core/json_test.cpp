@@ -58,10 +58,46 @@ struct Book {
   }
 };
 struct Shelf {
-  std::vector<Book> books{};
+  std::vector<Book> books{Book{}, Book{}};
 
   static constexpr char const* name = "shelf";
   static constexpr auto parameters() { return parameter_list(parameter("books", &Shelf::books, "in order")); }
+};
+
+/// Readers who share their books.
+struct Reader {
+  std::shared_ptr<std::vector<double> const> books = std::make_shared<std::vector<double> const>(500);
+
+  static constexpr char const* name = "reader";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("books", &Reader::books, "-", any_finite, "that they read"));
+  }
+};
+struct Club {
+  std::vector<Reader> readers{Reader{}, Reader{}};
+
+  static constexpr char const* name = "club";
+  static constexpr auto parameters() { return parameter_list(parameter("readers", &Club::readers, "in order")); }
+};
+
+/// A list of fixed length of a user's own.
+struct Triple {
+  double values[3]{};
+
+  [[nodiscard]] double* data() { return values; }
+  [[nodiscard]] double const* data() const { return values; }
+  [[nodiscard]] std::size_t size() const { return 3; }
+};
+template <class List>
+struct Holder {
+  List list{};
+  double after = 7.0;
+
+  static constexpr char const* name = "holder";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("list", &Holder::list, "-", any_finite, "numbers"),
+                          parameter("after", &Holder::after, "-", any_finite, "what follows"));
+  }
 };
 
 struct Everything {
@@ -274,22 +310,33 @@ TEST_CASE("bytes of another kind, cut short or changed are refused") {
   }
 }
 
-TEST_CASE("a list whose elements repeat may be long, but not endless") {
-  auto const bytes = to_binary(Shelf{{{}, {}}});
-  auto const content = bytes.substr(24);
+TEST_CASE_TEMPLATE("a list whose elements repeat may be long, but not endless", List, Shelf, Club) {
+  auto const content = to_binary(List{}).substr(24);
   constexpr std::size_t length_at = 3;  // behind number and names of the fields
   REQUIRE(content[length_at] == 2);
-  REQUIRE(content.back() == 0);  // the second book differs in nothing
-  auto const with = [&](std::uint64_t books) {
+  REQUIRE(content.back() == 0);  // the second element differs in nothing
+  auto const with = [&](std::uint64_t elements) {
     auto longer = content.substr(0, length_at) + '\xff';
-    for (int i = 0; i < 8; ++i) longer += static_cast<char>(books >> (8 * i) & 0xffu);
-    return detail::sealed(longer + content.substr(length_at + 1) + std::string(books - 2, '\0'));
+    for (int i = 0; i < 8; ++i) longer += static_cast<char>(elements >> (8 * i) & 0xffu);
+    return detail::sealed(longer + content.substr(length_at + 1) + std::string(elements - 2, '\0'));
   };
-  CHECK(from_binary<Shelf>(with(1000)).books.size() == 1000);
-  CHECK_THROWS_WITH_AS(static_cast<void>(from_binary<Shelf>(with(1'000'000), "f.bin")),
+  CHECK_NOTHROW(static_cast<void>(from_binary<List>(with(1000))));
+  CHECK_THROWS_WITH_AS(static_cast<void>(from_binary<List>(with(1'000'000), "f.bin")),
                        "f.bin: expands to far more memory than a file of its size should; take another copy; if this "
                        "one is sound, store lists that repeat only once",
                        ParameterError);
+}
+
+TEST_CASE("a list of fixed length takes neither more nor fewer elements") {
+  using Fixed = Holder<Triple>;
+  using Free = Holder<std::vector<double>>;
+  CHECK(from_json<Fixed>(R"({"list": [1, 2, 3]})").list.values[2] == 3.0);
+  CHECK(from_binary<Fixed>(to_binary(Free{{1.0, 2.0, 3.0}})).list.values[2] == 3.0);
+  for (std::size_t const length : {0u, 2u, 4u, 1000u}) {
+    Free const other{std::vector<double>(length, 1.0), 2.0};
+    CHECK_THROWS_AS(static_cast<void>(from_json<Fixed>(to_json(other, JsonDetail::everything))), ParameterError);
+    CHECK_THROWS_AS(static_cast<void>(from_binary<Fixed>(to_binary(other))), ParameterError);
+  }
 }
 
 TEST_CASE("writing leaves the struct alone, even one in memory that nobody may write") {

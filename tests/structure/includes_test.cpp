@@ -23,7 +23,7 @@ constexpr std::size_t no_room = rooms.size();
 /// Families are folders of a room, from top to bottom: a header of a family includes its own family, those above, and
 /// the headers that lie in the room itself.
 std::map<std::string, std::vector<std::string>> const families{
-    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build", "lanelet"}},
+    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "building", "lanelet"}},
     {"behavior", {"law", "following", "lane_change", "junction", "safety", "human", "pedestrian", "open_loop"}},
     {"evaluation", {"metrics", "rules"}},
     {"planner", {"search", "mcts", "frenet", "policy"}},

@@ -30,7 +30,7 @@ struct JobOutcome {
                           parameter("replay", &P::replay, "page for browsers"),
                           parameter("snapshot", &P::snapshot, "as in Run"),
                           parameter("problem", &P::problem, "why one of them is missing"),
-                          parameter("setup", &P::setup, "hash of set and contender"));
+                          parameter("setup", &P::setup, "-", Range{0, 1.9e19}, "hash of set and contender"));
   }
 };
 

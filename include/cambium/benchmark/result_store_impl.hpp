@@ -19,7 +19,8 @@
 
 namespace cambium {
 
-namespace detail {
+/// Helpers around SQLite.
+namespace detail::sql {
 
 inline constexpr char const* key_columns = "set_hash, scenario, behavior, parameters_hash, version, ";
 
@@ -115,20 +116,20 @@ inline void read_fields(sqlite3_stmt* s, int& at, TypeInfo const& type, void* ob
   }
 }
 
-}  // namespace detail
+}  // namespace detail::sql
 
 CAMBIUM_COLD void ResultStore::Close::operator()(sqlite3* db) const { sqlite3_close_v2(db); }
 CAMBIUM_COLD void ResultStore::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
 CAMBIUM_COLD ResultStore ResultStore::existing(std::filesystem::path const& file) {
   auto db = open(file.string(), SQLITE_OPEN_READONLY);
-  bool const may_be_read = detail::is_ours(db.get());
+  bool const may_be_read = detail::sql::is_ours(db.get());
   int const code = sqlite3_errcode(db.get());
   if (!may_be_read && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) &&
       !std::filesystem::exists(file.string() + "-wal"))
-    db = open(detail::immutable(file.string()),
+    db = open(detail::sql::immutable(file.string()),
               SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);  // in a folder that may only be read
-  if (!detail::is_ours(db.get()))
+  if (!detail::sql::is_ours(db.get()))
     throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db.get())) + ")",
                      "name one that a benchmark has written");
   auto copy = open(":memory:", SQLITE_OPEN_READWRITE);
@@ -145,8 +146,8 @@ CAMBIUM_COLD ResultStore::~ResultStore() {
 
 CAMBIUM_COLD void ResultStore::begin_run(std::string const& started, std::string const& command) {
   auto statement = prepare("INSERT INTO runs(started, command) VALUES(?, ?)");
-  detail::bind_value(statement.get(), 1, started);
-  detail::bind_value(statement.get(), 2, command);
+  detail::sql::bind_value(statement.get(), 1, started);
+  detail::sql::bind_value(statement.get(), 2, command);
   step(statement.get());
   run_ = sqlite3_last_insert_rowid(db_.get());
 }
@@ -154,10 +155,10 @@ CAMBIUM_COLD void ResultStore::begin_run(std::string const& started, std::string
 CAMBIUM_COLD void ResultStore::add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios,
                                        std::string const& source) {
   auto statement = prepare("INSERT OR REPLACE INTO sets(set_hash, title, scenarios, source) VALUES(?, ?, ?, ?)");
-  detail::bind_value(statement.get(), 1, hash_text(hash));
-  detail::bind_value(statement.get(), 2, title);
-  detail::bind_value(statement.get(), 3, static_cast<std::int64_t>(scenarios));
-  detail::bind_value(statement.get(), 4, source.empty() ? source_of(hash) : source);
+  detail::sql::bind_value(statement.get(), 1, hash_text(hash));
+  detail::sql::bind_value(statement.get(), 2, title);
+  detail::sql::bind_value(statement.get(), 3, static_cast<std::int64_t>(scenarios));
+  detail::sql::bind_value(statement.get(), 4, source.empty() ? source_of(hash) : source);
   step(statement.get());
 }
 
@@ -165,16 +166,16 @@ CAMBIUM_COLD void ResultStore::add_behavior(std::string const& name, std::uint64
                                             std::string const& command) {
   auto statement =
       prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, command) VALUES(?, ?, ?, ?)");
-  detail::bind_value(statement.get(), 1, name);
-  detail::bind_value(statement.get(), 2, hash_text(hash));
-  detail::bind_value(statement.get(), 3, parameters);
-  detail::bind_value(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
+  detail::sql::bind_value(statement.get(), 1, name);
+  detail::sql::bind_value(statement.get(), 2, hash_text(hash));
+  detail::sql::bind_value(statement.get(), 3, parameters);
+  detail::sql::bind_value(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
   step(statement.get());
 }
 
 CAMBIUM_COLD bool ResultStore::has(ResultKey const& key) {
-  detail::bind_key(has_.get(), key);
-  bool const found = has_row(has_.get()) && !may_be_the_machine(detail::text(has_.get(), 0));
+  detail::sql::bind_key(has_.get(), key);
+  bool const found = has_row(has_.get()) && !may_be_the_machine(detail::sql::text(has_.get(), 0));
   sqlite3_reset(has_.get());
   return found;
 }
@@ -182,13 +183,13 @@ CAMBIUM_COLD bool ResultStore::has(ResultKey const& key) {
 CAMBIUM_COLD void ResultStore::add(ResultRow const& row) {
   if (!in_transaction_) execute("BEGIN");
   in_transaction_ = true;
-  int at = detail::bind_key(add_result_.get(), row.key);
-  detail::bind_value(add_result_.get(), at++, std::to_string(row.seed));
-  detail::bind_value(add_result_.get(), at++, run_);
-  detail::bind_fields(add_result_.get(), at, type_info<RunResult>(), &row.result);
+  int at = detail::sql::bind_key(add_result_.get(), row.key);
+  detail::sql::bind_value(add_result_.get(), at++, std::to_string(row.seed));
+  detail::sql::bind_value(add_result_.get(), at++, run_);
+  detail::sql::bind_fields(add_result_.get(), at, type_info<RunResult>(), &row.result);
   step(add_result_.get());
-  at = detail::bind_key(add_times_.get(), row.key);
-  detail::bind_fields(add_times_.get(), at, type_info<RunTimes>(), &row.times);
+  at = detail::sql::bind_key(add_times_.get(), row.key);
+  detail::sql::bind_fields(add_times_.get(), at, type_info<RunTimes>(), &row.times);
   step(add_times_.get());
 }
 
@@ -198,21 +199,21 @@ CAMBIUM_COLD void ResultStore::commit() {
 }
 
 CAMBIUM_COLD void ResultStore::for_each(std::function<void(ResultRow const&)> const& f) {
-  auto statement =
-      prepare("SELECT " + std::string(detail::key_columns) + "seed, run, " +
-              detail::columns(type_info<RunResult>(), false) + ", " + detail::columns(type_info<RunTimes>(), false) +
-              " FROM results LEFT JOIN times USING(set_hash, scenario, behavior, parameters_hash, version) ORDER BY "
-              "set_hash, behavior, parameters_hash, version, scenario");
+  auto statement = prepare(
+      "SELECT " + std::string(detail::sql::key_columns) + "seed, run, " +
+      detail::sql::columns(type_info<RunResult>(), false) + ", " + detail::sql::columns(type_info<RunTimes>(), false) +
+      " FROM results LEFT JOIN times USING(set_hash, scenario, behavior, parameters_hash, version) ORDER BY "
+      "set_hash, behavior, parameters_hash, version, scenario");
   while (has_row(statement.get())) {
     ResultRow row;
-    row.key = {detail::hash_of(detail::text(statement.get(), 0)), sqlite3_column_int64(statement.get(), 1),
-               detail::text(statement.get(), 2), detail::hash_of(detail::text(statement.get(), 3)),
-               detail::text(statement.get(), 4)};
-    row.seed = std::strtoull(detail::text(statement.get(), 5).c_str(), nullptr, 10);
+    row.key = {detail::sql::hash_of(detail::sql::text(statement.get(), 0)), sqlite3_column_int64(statement.get(), 1),
+               detail::sql::text(statement.get(), 2), detail::sql::hash_of(detail::sql::text(statement.get(), 3)),
+               detail::sql::text(statement.get(), 4)};
+    row.seed = std::strtoull(detail::sql::text(statement.get(), 5).c_str(), nullptr, 10);
     row.run = sqlite3_column_int64(statement.get(), 6);
     int at = 7;
-    detail::read_fields(statement.get(), at, type_info<RunResult>(), &row.result);
-    detail::read_fields(statement.get(), at, type_info<RunTimes>(), &row.times);
+    detail::sql::read_fields(statement.get(), at, type_info<RunResult>(), &row.result);
+    detail::sql::read_fields(statement.get(), at, type_info<RunTimes>(), &row.times);
     f(row);
   }
 }
@@ -241,18 +242,18 @@ CAMBIUM_COLD void ResultStore::merge(ResultStore& other) {
     auto runs = other.prepare("SELECT run, started, command FROM runs");
     auto add_run = prepare("INSERT INTO runs(run, started, command) VALUES(?, ?, ?)");
     while (other.has_row(runs.get())) {
-      detail::bind_value(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
-      for (int const at : {1, 2}) detail::bind_value(add_run.get(), at + 1, detail::text(runs.get(), at));
+      detail::sql::bind_value(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
+      for (int const at : {1, 2}) detail::sql::bind_value(add_run.get(), at + 1, detail::sql::text(runs.get(), at));
       step(add_run.get());
     }
     auto sets = other.prepare("SELECT set_hash, title, scenarios, source FROM sets");
     while (other.has_row(sets.get()))
-      add_set(detail::hash_of(detail::text(sets.get(), 0)), detail::text(sets.get(), 1),
-              static_cast<std::size_t>(sqlite3_column_int64(sets.get(), 2)), detail::text(sets.get(), 3));
+      add_set(detail::sql::hash_of(detail::sql::text(sets.get(), 0)), detail::sql::text(sets.get(), 1),
+              static_cast<std::size_t>(sqlite3_column_int64(sets.get(), 2)), detail::sql::text(sets.get(), 3));
     auto behaviors = other.prepare("SELECT behavior, parameters_hash, parameters, command FROM behaviors");
     while (other.has_row(behaviors.get()))
-      add_behavior(detail::text(behaviors.get(), 0), detail::hash_of(detail::text(behaviors.get(), 1)),
-                   detail::text(behaviors.get(), 2), detail::text(behaviors.get(), 3));
+      add_behavior(detail::sql::text(behaviors.get(), 0), detail::sql::hash_of(detail::sql::text(behaviors.get(), 1)),
+                   detail::sql::text(behaviors.get(), 2), detail::sql::text(behaviors.get(), 3));
     in_transaction_ = true;  // `add` begins none
     other.for_each([&](ResultRow const& row) {
       if (may_be_the_machine(row.result.error) && has(row.key)) return;
@@ -275,7 +276,7 @@ CAMBIUM_COLD ResultStore::ResultStore(std::filesystem::path const& file, Databas
   if (sqlite3_errcode(db_.get()) != SQLITE_OK)
     fail("cannot be opened", "name a file in a folder that exists and that you may write to");
   if (sqlite3_db_readonly(db_.get(), "main") == 1) throw StoreError(file_, "may not be written", "name another file");
-  if (has_row(prepare("SELECT 1 FROM sqlite_master WHERE type = 'table'").get()) && !detail::is_ours(db_.get()))
+  if (has_row(prepare("SELECT 1 FROM sqlite_master WHERE type = 'table'").get()) && !detail::sql::is_ours(db_.get()))
     throw StoreError(file_, "holds tables of another program", "name another file");
   execute("PRAGMA journal_mode=WAL");
   execute("PRAGMA synchronous=NORMAL");
@@ -290,20 +291,20 @@ CAMBIUM_COLD ResultStore::ResultStore(std::filesystem::path const& file, Databas
       "version TEXT NOT NULL, ";
   std::string const primary = ", PRIMARY KEY(set_hash, behavior, parameters_hash, version, scenario)) WITHOUT ROWID";
   execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " +
-          detail::columns(type_info<RunResult>(), true) + primary);
-  execute("CREATE TABLE IF NOT EXISTS times(" + key + detail::columns(type_info<RunTimes>(), true) + primary);
+          detail::sql::columns(type_info<RunResult>(), true) + primary);
+  execute("CREATE TABLE IF NOT EXISTS times(" + key + detail::sql::columns(type_info<RunTimes>(), true) + primary);
   add_missing_column("sets", "source TEXT");  // of a database that an older version of cambium has made
   add_missing_column("behaviors", "command TEXT");
   add_missing_column("results", "others_failed INTEGER");
   add_missing_column("results", "off_route INTEGER");
   add_missing_column("results", "required_deceleration REAL");
   execute("COMMIT");
-  add_result_ = prepare("INSERT OR REPLACE INTO results(" + std::string(detail::key_columns) + "seed, run, " +
-                        detail::columns(type_info<RunResult>(), false) + ") VALUES(" +
-                        detail::marks(7 + type_info<RunResult>().fields().size()) + ")");
-  add_times_ = prepare("INSERT OR REPLACE INTO times(" + std::string(detail::key_columns) +
-                       detail::columns(type_info<RunTimes>(), false) + ") VALUES(" +
-                       detail::marks(5 + type_info<RunTimes>().fields().size()) + ")");
+  add_result_ = prepare("INSERT OR REPLACE INTO results(" + std::string(detail::sql::key_columns) + "seed, run, " +
+                        detail::sql::columns(type_info<RunResult>(), false) + ") VALUES(" +
+                        detail::sql::marks(7 + type_info<RunResult>().fields().size()) + ")");
+  add_times_ = prepare("INSERT OR REPLACE INTO times(" + std::string(detail::sql::key_columns) +
+                       detail::sql::columns(type_info<RunTimes>(), false) + ") VALUES(" +
+                       detail::sql::marks(5 + type_info<RunTimes>().fields().size()) + ")");
   has_ = prepare(
       "SELECT error FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND "
       "version=?");
@@ -343,22 +344,22 @@ CAMBIUM_COLD bool ResultStore::has_row(sqlite3_stmt* query) {
 
 CAMBIUM_COLD std::string ResultStore::of_set(std::string const& column, std::uint64_t set_hash) {
   auto statement = prepare("SELECT " + column + " FROM sets WHERE set_hash=?");
-  detail::bind_value(statement.get(), 1, hash_text(set_hash));
-  return has_row(statement.get()) ? detail::text(statement.get(), 0) : std::string();
+  detail::sql::bind_value(statement.get(), 1, hash_text(set_hash));
+  return has_row(statement.get()) ? detail::sql::text(statement.get(), 0) : std::string();
 }
 
 CAMBIUM_COLD std::string ResultStore::of_behavior(std::string const& column, std::string const& name,
                                                   std::uint64_t hash) {
   auto statement = prepare("SELECT " + column + " FROM behaviors WHERE behavior=? AND parameters_hash=?");
-  detail::bind_value(statement.get(), 1, name);
-  detail::bind_value(statement.get(), 2, hash_text(hash));
-  return has_row(statement.get()) ? detail::text(statement.get(), 0) : std::string();
+  detail::sql::bind_value(statement.get(), 1, name);
+  detail::sql::bind_value(statement.get(), 2, hash_text(hash));
+  return has_row(statement.get()) ? detail::sql::text(statement.get(), 0) : std::string();
 }
 
 CAMBIUM_COLD void ResultStore::add_missing_column(std::string const& table, std::string const& column) {
   auto query = prepare("SELECT 1 FROM pragma_table_info(?) WHERE name=?");
-  detail::bind_value(query.get(), 1, table);
-  detail::bind_value(query.get(), 2, column.substr(0, column.find(' ')));
+  detail::sql::bind_value(query.get(), 1, table);
+  detail::sql::bind_value(query.get(), 2, column.substr(0, column.find(' ')));
   if (!has_row(query.get())) execute("ALTER TABLE " + table + " ADD COLUMN " + column);
 }
 

@@ -11,9 +11,8 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/type_info.hpp"
 
-/// Described structs as fields in a row: the one form of scenario sets, of snapshots and of messages between processes.
-/// It holds what versions of a struct need: fields may be appended, and a struct with a `version` and an `upgrade` may
-/// change.
+/// The binary form of described structs, shared by scenario sets, snapshots and messages between processes. It has what
+/// versions of a struct need: fields may be appended, and a struct with a `version` and an `upgrade` may change.
 ///
 ///     struct:       once a type its version, number of fields and a hash of their names; then each field, or, where
 ///                   the reader has a similar struct already, bits for the fields that differ, and these
@@ -31,7 +30,7 @@ class FieldSink {
   virtual void number(char const* key, double value) = 0;
   virtual void number(char const* key, float value) = 0;
 
-  /// Whether it has nested tags, for readers of the file. Only then the following are called.
+  /// Whether the format nests named tags, as XML does. Only then the following are called.
   [[nodiscard]] virtual bool has_tags() const { return false; }
   virtual void begin(char const*) {}
   virtual void end(char const*) {}
@@ -101,8 +100,8 @@ void write_fields(FieldSink& sink, char const* key, TypeInfo const& type, void c
 
 /// Reads what `write_fields` has written, and brings structs of older versions up to date. Throws `ParameterError`
 /// where the content contradicts itself, is newer than the structs, or has a whole number out of its range. Real
-/// numbers keep their bits, whatever they are: a planner that went wrong may remember NaN. Takes 64 MiB at most, and 256
-/// bytes more for each byte read. `where`: the source, for messages.
+/// numbers keep their bits, whatever they are: a planner that went wrong may remember NaN. Takes 64 MiB at most, and
+/// 256 bytes more for each byte read. `where`: the source, for messages.
 void read_fields(FieldSource& source, char const* key, TypeInfo const& type, void* object, std::string const& where);
 
 /// The bytes of a file with this content.

@@ -224,7 +224,6 @@ class FieldWriter {
       if (auto const* const held = type.held(object)) bytes = bytes_in(type.element(), held);
       break;
     case TypeInfo::Kind::list: {
-      if (type.is_shared) break;
       auto const elements = type.elements(object);
       for (std::size_t i = 0; i < elements.count; ++i) bytes += elements.size + bytes_in(type.element(), elements[i]);
       break;
@@ -310,7 +309,7 @@ class FieldReader {
   }
 
   void count_copied(std::size_t bytes) {
-    constexpr std::size_t always = std::size_t{1} << 26, per_byte = 256;
+    constexpr std::uint64_t always = 1u << 26, per_byte = 256;
     copied_ += bytes;
     if (copied_ > always + per_byte * read_)
       throw ParameterError(where_, "expands to far more memory than a file of its size should",
@@ -464,8 +463,8 @@ class FieldReader {
   std::string const& where_;
   KnownTypes known_;
   int depth_ = 0;
-  std::size_t read_ = 0, copied_ = 0;  ///< [bytes]
-  bool is_old_ = false;                ///< a struct was of an older version
+  std::uint64_t read_ = 0, copied_ = 0;  ///< [bytes]
+  bool is_old_ = false;                  ///< a struct was of an older version
 };
 
 CAMBIUM_COLD void write_fields(FieldSink& sink, char const* key, TypeInfo const& type, void const* object,

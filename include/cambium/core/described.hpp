@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 namespace cambium {
 
@@ -52,6 +53,9 @@ template <class Owner, class Field>
 /// Describes a field without unit and range: a bool, an id, a text, or a struct, a `OneOf` or a list of these.
 template <class Owner, class Field>
 [[nodiscard]] constexpr Parameter<Owner, Field> parameter(char const* name, Field Owner::*field, char const* sentence) {
+  static_assert(!std::is_arithmetic_v<Field> || std::is_same_v<Field, bool>,
+                "cambium::parameter: a number needs a unit and a range: parameter(name, field, \"m/s\", Range{0, 70}, "
+                "sentence)");
   return {{name, "-", {}, sentence}, field};
 }
 

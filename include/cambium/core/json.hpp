@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "cambium/core/ids.hpp"
@@ -50,6 +51,8 @@ void read_json_value(JsonValue const& document, TypeInfo const& type, void* obje
 template <Described T>
 [[nodiscard]] std::string to_json(T const& object, JsonDetail detail = JsonDetail::differences,
                                   LaneNames const* lanes = nullptr) {
+  static_assert(std::is_default_constructible_v<T>,
+                "cambium::to_json: JSON holds what differs from T{}, which T lacks");
   return detail::print_json(detail::json_value(type_info<T>(), &object, detail, lanes));
 }
 
@@ -59,6 +62,8 @@ template <Described T>
 /// O(text).
 template <Described T>
 void read_json(T& object, std::string_view text, std::string const& where = "JSON", LaneNames const* lanes = nullptr) {
+  static_assert(std::is_default_constructible_v<T>,
+                "cambium::read_json: JSON holds what differs from T{}, which T lacks");
   T read = object;
   detail::read_json_value(detail::parse_json(text, where), type_info<T>(), &read, detail::struct_name<T>(), where,
                           lanes);

@@ -75,7 +75,7 @@ void edit_values(TypeInfo const& type, void* object, std::string const& where, E
 /// The valid values as text: "[0, 70]", "(0, inf)"; the names of a choice.
 [[nodiscard]] std::string range_text(ParameterInfo const& info);
 
-/// Checks a struct, or that which a `OneOf` holds. `name`: of the struct in messages; null: its own.
+/// `name`: of the struct in messages; null: its own.
 void check_values(TypeInfo const& type, void const* object, char const* name, std::string const& where);
 [[nodiscard]] std::string parameters_table(TypeInfo const& type);
 [[nodiscard]] std::string parameters_line(TypeInfo const& type, void const* object);

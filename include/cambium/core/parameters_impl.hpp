@@ -49,7 +49,7 @@ CAMBIUM_COLD void PlainValue::store(void* object, TypeInfo const& type) const {
     std::memcpy(object, &single, sizeof single);
   } else {
     detail::with_integer(type.size, type.is_signed, [&]<class Whole>(Whole) {
-      auto const whole = static_cast<Whole>(bits);
+      auto const whole = static_cast<Whole>(type.kind == TypeInfo::Kind::boolean ? bits != 0 : bits);
       std::memcpy(object, &whole, sizeof whole);
     });
   }
@@ -259,14 +259,8 @@ CAMBIUM_COLD void check_values(TypeInfo const& type, void const* object, char co
     }
   } reader;
   reader.where = &where;
-  auto const* struct_type = &type;
-  if (type.kind == TypeInfo::Kind::one_of) {
-    struct_type = &type.alternatives[type.index(object)]();
-    object = type.held(object);
-  }
-  if (struct_type->kind != TypeInfo::Kind::structure) return;
-  ParameterPath const root{nullptr, name != nullptr ? name : struct_type->name};
-  visit_fields(*struct_type, object, &root, ListElements::each, reader);
+  ParameterPath const root{nullptr, name != nullptr ? name : type.name};
+  visit_fields(type, object, &root, ListElements::each, reader);
 }
 
 CAMBIUM_COLD std::string parameters_table(TypeInfo const& type) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "cambium/core/described.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/one_of.hpp"
 
@@ -34,7 +34,7 @@ struct FieldInfo;
 ///     list        element, elements, fill         an array, a vector, a pointer to one, or what is made from a span
 ///     text                                        a std::string
 ///     opaque                                      an alternative without description: no file can hold it
-///     others                                      plain values: see `PlainValue`
+///     the rest                                    plain values: see `PlainValue`
 struct TypeInfo {
   enum class Kind : std::uint8_t {
     structure,
@@ -69,8 +69,8 @@ struct TypeInfo {
   Kind kind;
   std::size_t size;                                      ///< [bytes]
   bool is_signed = false;                                ///< of an integer, or of the integer that an enum is stored as
-  bool is_trivial = false;                               ///< copies need no memory besides
-  char const* name = nullptr;                            ///< of a structure, or of an opaque type
+  bool is_trivial = false;                               ///< a copy allocates nothing
+  char const* name = nullptr;                            ///< its member `name`, else "parameters"
   void const* (*usual)() = nullptr;                      ///< the default value; null for types without one
   void (*assign)(void* to, void const* from) = nullptr;  ///< null for types that cannot be assigned
 
@@ -92,9 +92,8 @@ struct TypeInfo {
   // Of a list or an optional.
   Get element = nullptr;
   std::size_t least = 0, most = any_length;  ///< lengths of a list
-  bool is_shared = false;                    ///< copies share the elements
   Elements (*elements)(void const* object) = nullptr;
-  /// Gives a list `length` elements, one after the other; what it has already, is kept and handed over. `where`: for
+  /// Gives a list `length` elements, one after the other; existing elements are kept and passed to `fill`. `where`: for
   /// messages of a type that checks its elements.
   void (*fill)(void* object, std::size_t length, std::string const& where, Fill const& fill) = nullptr;
 
@@ -104,7 +103,9 @@ struct TypeInfo {
   /// Whether it is an integer, an enum or an id without a sign, of four bytes or more.
   [[nodiscard]] constexpr bool is_long_unsigned() const { return is_plain() && !is_real() && !is_signed && size >= 4; }
   /// Whether a file can hold it as an alternative.
-  [[nodiscard]] constexpr bool is_storable() const { return kind == Kind::structure && usual != nullptr; }
+  [[nodiscard]] constexpr bool is_storable() const {
+    return kind == Kind::structure && usual != nullptr && assign != nullptr && copy != nullptr;
+  }
 };
 
 /// A field of a described struct.
@@ -197,6 +198,14 @@ auto with_integer(std::size_t size, bool is_signed, F const& f) {
   }
 }
 
+/// Whether a list or an optional can get new values of type `T`; else a compile error.
+template <class T>
+[[nodiscard]] constexpr bool check_element() {
+  static_assert(std::is_default_constructible_v<T> && std::is_copy_assignable_v<T>,
+                "cambium::parameter: what a list or an optional holds must have a default and be assignable");
+  return true;
+}
+
 /// The table of a field, of an element of a list, or of an optional value.
 template <class T>
 [[nodiscard]] constexpr TypeInfo::Get type_of_field() {
@@ -265,7 +274,6 @@ concept HasCheck = requires(T const& object) {
 
 template <Described T>
 void describe_structure(TypeInfo& info) {
-  info.name = struct_name<T>();
   info.fields = &fields_of<T>;
   if constexpr (requires { typename std::integral_constant<unsigned, T::version>; }) info.version = T::version;
   if constexpr (HasUpgrade<T>)
@@ -311,6 +319,7 @@ void describe_one_of(TypeInfo& info, std::variant<Models...> const*) {
 
 template <Optional T>
 void describe_optional(TypeInfo& info) {
+  static_assert(check_element<typename T::value_type>());
   info.element = type_of_field<typename T::value_type>();
   info.held = [](void const* object) -> void const* {
     auto const& value = *static_cast<T const*>(object);
@@ -349,6 +358,8 @@ void fill_list(T& list, std::size_t length, std::string const& where, TypeInfo::
     else
       list = grown.empty() ? T{} : T(std::span<Element const>(grown), where);
   } else {
+    if (length != list.size())
+      throw ParameterError(where, "has " + std::to_string(length) + " elements", "give " + std::to_string(list.size()));
     for (std::size_t i = 0; i < length; ++i) fill(i, &list.data()[i], i > 0 ? &list.data()[i - 1] : nullptr);
   }
 }
@@ -356,13 +367,13 @@ void fill_list(T& list, std::size_t length, std::string const& where, TypeInfo::
 template <ParameterList T>
 void describe_list(TypeInfo& info) {
   using Element = ElementOf<T>;
+  static_assert(check_element<Element>());
   info.element = type_of_field<Element>();
   if constexpr (requires { T::static_capacity; }) {
     info.most = T::static_capacity;
   } else if constexpr (requires { std::tuple_size<T>::value; }) {
     info.least = info.most = std::tuple_size_v<T>;
   }
-  info.is_shared = PointsToElements<T>;
   info.elements = [](void const* object) -> TypeInfo::Elements {
     auto const elements = elements_of(*static_cast<T const*>(object));
     return {elements.data(), elements.size(), sizeof(Element)};
@@ -377,6 +388,7 @@ template <class T>
   using Kind = TypeInfo::Kind;
   TypeInfo info{Kind::opaque, sizeof(T)};
   info.is_trivial = std::is_trivially_copyable_v<T>;
+  info.name = struct_name<T>();
   if constexpr (std::is_default_constructible_v<T>)
     info.usual = []() -> void const* {
       static T const usual{};
@@ -398,9 +410,8 @@ template <class T>
   } else if constexpr (ParameterList<T>) {
     info.kind = Kind::list;
     describe_list<T>(info);
-  } else if constexpr (std::is_class_v<T>) {
-    info.name = struct_name<T>();
-  } else {
+  } else if constexpr (!std::is_class_v<T>) {
+    static_assert(sizeof(T) <= 8, "cambium::parameter: a number has at most 8 bytes; take double for long double");
     info.kind = plain_kind<T>();
     info.is_signed = std::is_signed_v<T>;
     if constexpr (std::is_enum_v<T>) info.is_signed = std::is_signed_v<std::underlying_type_t<T>>;

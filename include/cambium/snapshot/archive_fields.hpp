@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 #include <boost/serialization/level.hpp>
@@ -107,7 +108,9 @@ void archive_fields(Archive& archive, char const* key, Value& value) {
       read_fields(source, key, type_info<Value>(), &value, "snapshot");
     }
   } catch (ParameterError const& problem) {
-    throw SnapshotError("", problem.what());
+    std::string_view what = problem.what();
+    if (constexpr std::string_view place = "snapshot: "; what.starts_with(place)) what.remove_prefix(place.size());
+    throw SnapshotError("snapshot", what);
   }
 }
 

@@ -344,7 +344,7 @@ struct ArchivedScenes {
 template <class Archive>
 requires requires(Archive& archive, void* id) { archive.template get_helper<ArchivedScenes>(id); }
 [[nodiscard]] ArchivedScenes& scenes_of(Archive& archive) {
-  static constexpr char key{};  // its address stands for them
+  static constexpr char key{};  // its address is the helper's id
   return archive.template get_helper<ArchivedScenes>(const_cast<char*>(&key));
 }
 

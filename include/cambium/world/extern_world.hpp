@@ -9,8 +9,17 @@
 /// type, `CAMBIUM_INSTANTIATE_WORLD(MyWorld);` in one source, both outside of any namespace. `MyWorld` is a
 /// `cambium::World`, or an alias of one. Sources that include the header then do not compile stepping, adding or
 /// observing.
-#define CAMBIUM_EXTERN_WORLD(...) extern CAMBIUM_INSTANTIATE_WORLD(__VA_ARGS__)
-#define CAMBIUM_INSTANTIATE_WORLD(...)                                                              \
+#define CAMBIUM_EXTERN_WORLD(...)     \
+  CAMBIUM_REQUIRE_WORLD(__VA_ARGS__); \
+  extern CAMBIUM_INSTANCE_OF_WORLD(__VA_ARGS__)
+#define CAMBIUM_INSTANTIATE_WORLD(...) \
+  CAMBIUM_REQUIRE_WORLD(__VA_ARGS__);  \
+  CAMBIUM_INSTANCE_OF_WORLD(__VA_ARGS__)
+#define CAMBIUM_REQUIRE_WORLD(...)              \
+  static_assert(                                \
+      ::cambium::detail::is_world<__VA_ARGS__>, \
+      "cambium: the argument of CAMBIUM_EXTERN_WORLD or CAMBIUM_INSTANTIATE_WORLD is no cambium::World<...>")
+#define CAMBIUM_INSTANCE_OF_WORLD(...)                                                              \
   template class ::cambium::World<typename __VA_ARGS__::Behaviors, typename __VA_ARGS__::Execution, \
                                   typename __VA_ARGS__::Dynamics, typename __VA_ARGS__::Observer>
 

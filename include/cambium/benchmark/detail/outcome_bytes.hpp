@@ -5,6 +5,7 @@
 
 #include "cambium/benchmark/executor.hpp"
 #include "cambium/core/binary.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/type_info.hpp"
 
 /// Outcomes of jobs as bytes, for messages between processes of one program.
@@ -17,7 +18,11 @@ namespace cambium::detail {
 /// Throws `Error` if the bytes are cut short, or of another program.
 [[nodiscard]] inline JobOutcome read_outcome(std::string_view bytes) {
   JobOutcome outcome;
-  read_binary(bytes, type_info<JobOutcome>(), &outcome, "message");
+  try {
+    read_binary(bytes, type_info<JobOutcome>(), &outcome, "message");
+  } catch (ParameterError const& problem) {
+    throw Error("", problem.what(), "run the same build of the program in all processes");
+  }
   return outcome;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <variant>
 
 #include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
@@ -11,8 +12,10 @@ namespace cambium::detail {
 /// stage in a chain with others, is out of range.
 template <class Parameters>
 void check_if_described(Parameters const& parameters, std::string const& where) {
-  if constexpr (Described<Parameters> || Variant<Parameters>)
-    check_values(type_info<Parameters>(), &parameters, nullptr, where);
+  if constexpr (Described<Parameters>)
+    check_parameters(parameters, where);
+  else if constexpr (Variant<Parameters>)
+    std::visit([&where](auto const& one) { check_if_described(one, where); }, parameters);
   else if constexpr (requires { parameters.with_stages([](auto const&...) {}); })
     parameters.with_stages([&where](auto const&... stage) { (check_if_described(stage, where), ...); });
 }

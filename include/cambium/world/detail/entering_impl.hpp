@@ -150,6 +150,7 @@ CAMBIUM_COLD void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadC
 }
 
 CAMBIUM_COLD void check_outline(geometry::Polygon const& outline) {
+  if (outline.size() == 0) throw WorldError("object", "its outline has no corners", "give at least three");
   double around = 0.0;
   for (std::size_t i = 0; i < outline.size(); ++i) around += (outline.edge(i).second - outline.edge(i).first).norm();
   if (around > 10'000.0) throw WorldError("object", "its outline is longer than 10 km", "give coordinates in metres");

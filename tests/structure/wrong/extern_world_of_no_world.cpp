@@ -1,0 +1,5 @@
+// expect: is no cambium::World
+#include <cambium/cambium.hpp>
+
+struct Traffic {};
+CAMBIUM_EXTERN_WORLD(Traffic);

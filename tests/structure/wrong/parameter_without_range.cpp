@@ -1,0 +1,11 @@
+// expect: a number needs a unit and a range
+#include <cambium/core/described.hpp>
+
+struct Driver {
+  double speed = 15.0;
+
+  static constexpr auto parameters() {
+    return cambium::parameter_list(cambium::parameter("speed", &Driver::speed, "on a free road"));
+  }
+};
+constexpr auto list = Driver::parameters();
