@@ -124,7 +124,7 @@ template <class Value>
 struct Flag {
   Value value{};
   static constexpr char const* name = "flag";
-  static constexpr auto parameters() { return parameter_list(parameter("value", &Flag::value, "")); }
+  static constexpr auto parameters() { return parameter_list(parameter("value", &Flag::value, "-", {}, "")); }
 };
 /// In percent, then in tenths: another version, with another range.
 template <bool in_tenths>

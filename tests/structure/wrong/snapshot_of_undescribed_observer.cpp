@@ -1,4 +1,5 @@
 // expect: cambium: a snapshot holds only models and memories that describe their fields
+// also: a field must be a number
 #include <cambium/behavior/following/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>

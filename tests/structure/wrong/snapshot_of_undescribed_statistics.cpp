@@ -1,4 +1,5 @@
 // expect: cambium: a snapshot of a kept tree holds the Statistics of its selection policy; describe their fields
+// also: a field must be a number
 #include <cambium/dynamics.hpp>
 #include <cambium/execution.hpp>
 #include <cambium/planner.hpp>
