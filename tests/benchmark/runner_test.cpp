@@ -5,6 +5,7 @@
 #include <doctest/doctest.h>
 #include <sqlite3.h>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,6 +23,7 @@
 
 #include "../examples/program.hpp"
 #include "../support/merging_set.hpp"
+#include "../support/skipped.hpp"
 
 using namespace cambium;
 
@@ -347,6 +349,7 @@ TEST_CASE("a database that may only be read is read") {
   std::filesystem::permissions(folder.path, std::filesystem::perms(0555));
   auto const user = geteuid();
   if (user == 0) REQUIRE(seteuid(65534) == 0);  // root may write everywhere
+  bool const is_reachable = faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) == 0;
   std::string found, refusal;
   try {
     auto store = ResultStore::existing(file);
@@ -357,6 +360,10 @@ TEST_CASE("a database that may only be read is read") {
   }
   if (user == 0) REQUIRE(seteuid(0) == 0);
   std::filesystem::permissions(folder.path, std::filesystem::perms(0755));
+  if (!is_reachable) {
+    CHECK(refusal.find("unable to open database file") != std::string::npos);
+    return support::skip("the build is in a folder that only root may enter");
+  }
   CHECK(found == expected);
   CHECK(refusal.find("may not be written") != std::string::npos);
 }

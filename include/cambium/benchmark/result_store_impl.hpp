@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include "cambium/benchmark/result_store.hpp"
@@ -125,8 +126,9 @@ CAMBIUM_COLD ResultStore ResultStore::existing(std::filesystem::path const& file
   auto db = open(file.string(), SQLITE_OPEN_READONLY);
   bool const may_be_read = detail::sql::is_ours(db.get());
   int const code = sqlite3_errcode(db.get());
+  std::error_code unreachable;  // then SQLite says so
   if (!may_be_read && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) &&
-      !std::filesystem::exists(file.string() + "-wal"))
+      !std::filesystem::exists(file.string() + "-wal", unreachable))
     db = open(detail::sql::immutable(file.string()),
               SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);  // in a folder that may only be read
   if (!detail::sql::is_ours(db.get()))
