@@ -21,8 +21,9 @@
 #include "cambium/scenario/detail/scenario_maps.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 
-/// Scenario sets as files: JSON to read and to exchange, or compact bytes for large sets. A file names maps by their path and lanes as "road/section/lane"; behaviours and other
-/// models by the names of the alternatives that the program's `World` has.
+/// Scenario sets as files: JSON to read and to exchange, or compact bytes for large sets. A file names maps by their
+/// path and lanes as "road/section/lane"; behaviours and other models by the names of the alternatives that the
+/// program's `World` has.
 ///
 ///   {"format": 1, "scenarios": [
 ///     {"map_file": "merging.xodr", "ego": 0, "agents": [
