@@ -437,6 +437,7 @@ TEST_CASE("a world that contradicts itself is refused") {
   };
   refuses("there is no such id", [](auto& parts) { parts.agents.back().id = none<AgentId>; });
   refuses("an object has no id", [](auto& parts) { parts.objects.back().id = none<ObjectId>; });
+  refuses("its outline has no corners", [](auto& parts) { parts.objects[0].outline = geometry::Polygon(); });
   refuses("its outline is longer than 10 km", [](auto& parts) {
     parts.objects[0].outline = geometry::Polygon({{0, 0}, {9000, 0}, {9000, 9000}});
   });
