@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -47,12 +48,18 @@ inline void add_letters(Fnv1a<std::uint32_t>& hash, TypeInfo const& type) {
 
 /// Hash of the names and kinds of a struct's first fields, so that two that swap places are not read as each other.
 [[nodiscard]] inline std::uint16_t hash_of_fields(TypeInfo const& type, std::size_t count) {
+  constexpr std::uint32_t is_known = 1u << 16;
+  bool const is_whole = count == type.fields().size();
+  if (auto const known = type.hash_of_names->load(std::memory_order_relaxed); is_whole && known != 0)
+    return static_cast<std::uint16_t>(known);
   Fnv1a<std::uint32_t> hash;
   for (auto const& field : type.fields().first(count)) {
     for (char const* letter = field.name; *letter != '\0'; ++letter) hash.add_byte(static_cast<unsigned char>(*letter));
     add_letters(hash, field.type());
   }
-  return static_cast<std::uint16_t>(hash.value() ^ hash.value() >> 16);
+  auto const result = static_cast<std::uint16_t>(hash.value() ^ hash.value() >> 16);
+  if (is_whole) type.hash_of_names->store(result | is_known, std::memory_order_relaxed);
+  return result;
 }
 
 /// A bit for each field of a struct.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -76,8 +77,9 @@ struct TypeInfo {
 
   // Of a structure.
   std::span<FieldInfo const> (*fields)() = nullptr;
-  unsigned version = 0;                                                   ///< its member `version`, else 0
-  void (*upgrade)(void* object, unsigned from) = nullptr;                 ///< its member `upgrade`; may be null
+  std::atomic<std::uint32_t>* hash_of_names = nullptr;     ///< of all fields, once it is known: see binary_impl.hpp
+  unsigned version = 0;                                    ///< its member `version`, else 0
+  void (*upgrade)(void* object, unsigned from) = nullptr;  ///< its member `upgrade`; may be null
   void (*check)(void const* object, std::string const& where) = nullptr;  ///< its member `check`; may be null
   void* (*copy)(void const* object) = nullptr;                            ///< on the heap; `destroy` deletes it
   void (*destroy)(void* object) = nullptr;
@@ -111,11 +113,10 @@ struct TypeInfo {
 /// A field of a described struct.
 struct FieldInfo : ParameterInfo {
   TypeInfo::Get type;
-  void* (*reach)(std::byte const* member, void* object);
-  std::array<std::byte, 2 * sizeof(void*)> member;  ///< the pointer to member
+  std::size_t offset;  ///< in the struct [bytes]
 
-  [[nodiscard]] void* in(void* object) const { return reach(member.data(), object); }
-  [[nodiscard]] void const* in(void const* object) const { return reach(member.data(), const_cast<void*>(object)); }
+  [[nodiscard]] void* in(void* object) const { return static_cast<std::byte*>(object) + offset; }
+  [[nodiscard]] void const* in(void const* object) const { return static_cast<std::byte const*>(object) + offset; }
 };
 
 /// The table of a type.
@@ -237,11 +238,13 @@ template <Described T>
   return count;
 }
 
-template <class T, class Member>
-void* reach_member(std::byte const* bytes, void* object) {
-  Member member;
-  std::memcpy(&member, bytes, sizeof member);
-  return &(static_cast<T*>(object)->*member);
+/// Where a member is in its struct. It is asked of memory without an object, as `offsetof` is: not each struct has a
+/// default.
+template <class T, class Owner, class Field>
+[[nodiscard]] std::size_t offset_of(Field Owner::*member) {
+  alignas(T) static std::byte memory[sizeof(T)]{};
+  auto const* const field = &(reinterpret_cast<T const*>(memory)->*member);
+  return static_cast<std::size_t>(reinterpret_cast<std::byte const*>(field) - memory);
 }
 
 template <Described T>
@@ -250,12 +253,9 @@ template <Described T>
     std::array<FieldInfo, field_count<T>()> all;
     auto next = all.begin();
     for_each_parameter<T>([&]<class Owner, class Field>(Parameter<Owner, Field> const& parameter) {
-      using Member = Field Owner::*;
-      static_assert(sizeof(Member) <= sizeof(next->member));
       static_cast<ParameterInfo&>(*next) = parameter;
       next->type = type_of_field<Field>();
-      next->reach = &reach_member<T, Member>;
-      std::memcpy(next->member.data(), &parameter.field, sizeof(Member));
+      next->offset = offset_of<T>(parameter.field);
       ++next;
     });
     return all;
@@ -273,7 +273,11 @@ concept HasCheck = requires(T const& object) {
 };
 
 template <Described T>
+inline std::atomic<std::uint32_t> known_hash_of_names{0};
+
+template <Described T>
 void describe_structure(TypeInfo& info) {
+  info.hash_of_names = &known_hash_of_names<T>;
   info.fields = &fields_of<T>;
   if constexpr (requires { typename std::integral_constant<unsigned, T::version>; }) info.version = T::version;
   if constexpr (HasUpgrade<T>)
