@@ -352,6 +352,10 @@ CAMBIUM_COLD std::uint64_t parameters_hash(TypeInfo const& type, void const* obj
 }
 
 CAMBIUM_COLD bool are_equal(TypeInfo const& type, void const* a, void const* b, Equality equality) {
+  // Equal bytes are equal fields; the reverse does not hold, because of padding.
+  if (equality == Equality::of_bits && type.is_trivial && type.kind != TypeInfo::Kind::opaque &&
+      std::memcmp(a, b, type.size) == 0)
+    return true;
   switch (type.kind) {
     case TypeInfo::Kind::structure:
       for (auto const& field : type.fields())

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -129,9 +128,6 @@ namespace detail {
 [[nodiscard]] std::string alternative_name(TypeInfo const& one_of, std::size_t index);
 /// The names of all that a file can hold.
 [[nodiscard]] std::vector<std::string> alternative_names(TypeInfo const& one_of);
-}  // namespace detail
-
-namespace detail {
 
 template <class F>
 concept HasElements = requires(F const list) {
