@@ -170,6 +170,8 @@ is_configured() {
     cache_says "CMAKE_BUILD_TYPE:STRING=Release" && cache_says "CMAKE_HOME_DIRECTORY:INTERNAL=$root"
 }
 
+more_cmake_options=()  # of the caller
+
 # configure PART PACKAGE...: packages, then CMake; does nothing when that is done already. Tests run examples, too.
 configure() {
   local part=$1
@@ -198,7 +200,7 @@ configure() {
   fi
   rm -f "$build/.configured_$part"
   note "configuring"
-  run_quietly cmake -S "$root" -B "$build" "${options[@]}" || exit 1
+  run_quietly cmake -S "$root" -B "$build" "${options[@]}" ${more_cmake_options[@]+"${more_cmake_options[@]}"} || exit 1
   touch "$build/.configured_$part"
 }
 

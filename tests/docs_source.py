@@ -1,0 +1,111 @@
+"""docs_source.py FOLDER: writes into FOLDER what Doxygen reads of cambium, for tests/docs: the headers, each as a part of its
+room, with the sentence of its parameter at each field; and a page a room, of its README."""
+
+import os
+import re
+import sys
+
+root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+include = os.path.join(root, "include", "cambium")
+rooms = sorted(r for r in os.listdir(include) if os.path.isfile(os.path.join(include, r, "README.md")))
+
+PARAMETER = re.compile(r'parameter\(\s*"[^"]*",\s*&(?P<owner>\w+)::(?P<field>\w+)(?P<rest>.*?)(?P<sentence>(?:"[^"]*"\s*)+)\)', re.S)
+STRUCT = re.compile(r"^(?:struct|class) (\w+)[^;{]*{\n(.*?)^};", re.S | re.M)
+FIELD = re.compile(r"  [\w:<>, ]+ (\w+)(?: = [^;]*|{[^;]*})?;")
+SHARED = re.compile(r"\bauto (\w+_parameters)\(")  # makes the parameters of several structs
+NAMESPACE = re.compile(r"(?:\n((?:///.*\n)+))?^namespace ([\w:]+) {\n(\n?)|^}  // namespace .*\n", re.M)
+
+
+def sentences(text):
+    """(struct or function, field) and what its parameter says."""
+    for found in PARAMETER.finditer(text):
+        unit = re.search(r'^,\s*"([^"]+)",', found["rest"])
+        said = "".join(re.findall(r'"([^"]*)"', found["sentence"]))
+        functions = SHARED.findall(text, 0, found.start())
+        for owner in [found["owner"], *functions[-1:]]:
+            yield (owner, found["field"]), said + (f" [{unit[1]}]" if unit and unit[1] != "-" else "")
+
+
+def header(text, room, said):
+    def struct(found):
+        owners = [found[1], *re.findall(r"\b(\w+_parameters)<", found[2])]
+        lines = found[2].split("\n")
+        for i, line in enumerate(lines):
+            field = FIELD.fullmatch(line)
+            if field and not (i and lines[i - 1].lstrip().startswith("///")):
+                sentence = next((said[owner, field[1]] for owner in owners if (owner, field[1]) in said), None)
+                lines[i] += f"  ///< {sentence}" if sentence else ""
+        return found[0].replace(found[2], "\n".join(lines))
+
+    grouped = []  # whether the open namespaces are
+
+    def namespace(found):  # as many lines as before
+        if not found[2]:
+            return f"/** @}} */ {found[0]}" if grouped.pop() else found[0]
+        grouped.append(bool(found[3]) and "detail" not in found[2] and room in rooms)
+        about = f"/// @file\n{found[1]}" if found[1] else ""
+        blank = f"  /** @addtogroup {room}\n@{{ */\n" if grouped[-1] else f"\n{found[3]}"
+        return f"{about}namespace {found[2]} {{{blank}"
+
+    return NAMESPACE.sub(namespace, STRUCT.sub(struct, text))
+
+
+def slug(title):
+    """The anchor that GitHub gives to a title."""
+    return re.sub(r"[^\w\- ]", "", title.lower()).strip().replace(" ", "-")
+
+
+def link(folder, room):
+    def rewrite(found):
+        text, target = found[2], found[3]
+        if re.match(r"[a-z]+:", target):
+            return found[0]
+        path, _, anchor = target.partition("#")
+        path = os.path.normpath(os.path.join(folder, path)) if path else None
+        other = room if path is None else next((r for r in rooms if path == os.path.join(include, r, "README.md")), None)
+        if other:
+            return f'@ref {other}{"-" + anchor if anchor else ""} "{text}"'
+        if not os.path.exists(path):
+            sys.exit(f"{os.path.relpath(folder, root)}/README.md: no {target}")
+        path = os.path.relpath(path, os.path.join(root, "build", "docs", "html"))
+        return f'<img src="{path}" alt="{text}"/>' if found[1] else f'<a href="{path}">{text}</a>'
+
+    return rewrite
+
+
+def page(readme, label, command):
+    folder = os.path.dirname(readme)
+    with open(readme, encoding="utf-8") as file:
+        title, _, body = file.read().partition("\n")
+    parts = re.split(r"(^```.*?^```$)", body, flags=re.S | re.M)
+    for i in range(0, len(parts), 2):
+        parts[i] = re.sub(r"^(#+) (.*)$", lambda h: f"{h[1][1:]} {h[2]} {{#{label}-{slug(h[2])}}}", parts[i], flags=re.M)
+        parts[i] = re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", link(folder, label), parts[i])
+    body = "".join(parts).replace("/*", "/&zwj;*").replace("*/", "*&zwj;/")
+    return f"/** {command} {title.lstrip('# ')}\n{body}\n*/\n"
+
+
+def write(path, text):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def main(out):
+    write(os.path.join(out, "index.dox"), page(os.path.join(root, "README.md"), "index", "@mainpage"))
+    for room in rooms:
+        write(os.path.join(out, f"{room}.dox"), page(os.path.join(include, room, "README.md"), room, f"@defgroup {room}"))
+    texts, said = {}, {}
+    for folder, _, files in os.walk(include):
+        for name in files:
+            path = os.path.relpath(os.path.join(folder, name), include)
+            if name.endswith(".hpp") and not name.endswith("_impl.hpp") and "detail" not in path.split(os.sep):
+                with open(os.path.join(include, path), encoding="utf-8") as file:
+                    texts[path] = file.read()
+    for text in texts.values():
+        said.update(sentences(text))
+    for path, text in texts.items():
+        write(os.path.join(out, "cambium", path), header(text, path.split(os.sep)[0].removesuffix(".hpp"), said))
+
+
+main(sys.argv[1])
