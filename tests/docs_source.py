@@ -8,6 +8,14 @@ import sys
 root = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 include = os.path.join(root, "include", "cambium")
 rooms = sorted(r for r in os.listdir(include) if os.path.isfile(os.path.join(include, r, "README.md")))
+PAGES = {os.path.join(include, room, "README.md"): f"@defgroup {room}" for room in rooms} | {
+    os.path.join(root, "README.md"): "@mainpage",
+    os.path.join(root, ".github", "CONTRIBUTING.md"): "@page contributing",
+    os.path.join(root, "maps", "README.md"): "@page maps",
+    os.path.join(root, "examples", "README.md"): "@page examples",
+    os.path.join(root, "bench", "README.md"): "@page bench",
+    os.path.join(root, "tests", "README.md"): "@page tests",
+}
 
 PARAMETER = re.compile(r'parameter\(\s*"[^"]*",\s*&(?P<owner>\w+)::(?P<field>\w+)(?P<rest>.*?)(?P<sentence>(?:"[^"]*"\s*)+)\)', re.S)
 STRUCT = re.compile(r"^(?:struct|class) (\w+)[^;{]*{\n(.*?)^};", re.S | re.M)
@@ -55,16 +63,21 @@ def slug(title):
     return re.sub(r"[^\w\- ]", "", title.lower()).strip().replace(" ", "-")
 
 
-def link(folder, room):
+def label_of(path):
+    return PAGES[path].split()[1] if " " in PAGES[path] else "index"
+
+
+def link(folder, label):
     def rewrite(found):
         text, target = found[2], found[3]
         if re.match(r"[a-z]+:", target):
             return found[0]
         path, _, anchor = target.partition("#")
         path = os.path.normpath(os.path.join(folder, path)) if path else None
-        other = room if path is None else next((r for r in rooms if path == os.path.join(include, r, "README.md")), None)
-        if other:
-            return f'@ref {other}{"-" + anchor if anchor else ""} "{text}"'
+        if path and os.path.join(path, "README.md") in PAGES:
+            path = os.path.join(path, "README.md")
+        if path is None or path in PAGES:
+            return f'@ref {label if path is None else label_of(path)}{"-" + anchor if anchor else ""} "{text}"'
         if not os.path.exists(path):
             sys.exit(f"{os.path.relpath(folder, root)}/README.md: no {target}")
         path = os.path.relpath(path, os.path.join(root, "build", "docs", "html"))
@@ -73,16 +86,16 @@ def link(folder, room):
     return rewrite
 
 
-def page(readme, label, command):
-    folder = os.path.dirname(readme)
+def page(readme):
+    folder, label = os.path.dirname(readme), label_of(readme)
     with open(readme, encoding="utf-8") as file:
         title, _, body = file.read().partition("\n")
     parts = re.split(r"(^```.*?^```$)", body, flags=re.S | re.M)
     for i in range(0, len(parts), 2):
-        parts[i] = re.sub(r"^(#+) (.*)$", lambda h: f"{h[1][1:]} {h[2]} {{#{label}-{slug(h[2])}}}", parts[i], flags=re.M)
+        parts[i] = re.sub(r"^#(#+) (.*)$", lambda h: f"{h[1]} {h[2]} {{#{label}-{slug(h[2])}}}", parts[i], flags=re.M)
         parts[i] = re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", link(folder, label), parts[i])
     body = "".join(parts).replace("/*", "/&zwj;*").replace("*/", "*&zwj;/")
-    return f"/** {command} {title.lstrip('# ')}\n{body}\n*/\n"
+    return f"/** {PAGES[readme]} {title.lstrip('# ')}\n{body}\n*/\n"
 
 
 def write(path, text):
@@ -92,9 +105,8 @@ def write(path, text):
 
 
 def main(out):
-    write(os.path.join(out, "index.dox"), page(os.path.join(root, "README.md"), "index", "@mainpage"))
-    for room in rooms:
-        write(os.path.join(out, f"{room}.dox"), page(os.path.join(include, room, "README.md"), room, f"@defgroup {room}"))
+    for readme in PAGES:
+        write(os.path.join(out, f"{label_of(readme)}.dox"), page(readme))
     texts, said = {}, {}
     for folder, _, files in os.walk(include):
         for name in files:
