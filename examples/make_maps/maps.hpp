@@ -8,7 +8,7 @@ namespace make_maps {
 using cambium::MapBuilder;
 using namespace cambium::map;
 using cambium::map::opendrive::ContactPoint;
-using cambium::map::opendrive::LaneChange;
+using cambium::map::opendrive::LaneChangePermission;
 
 constexpr double kmh(double speed) { return speed / 3.6; }  ///< [m/s]
 

@@ -25,7 +25,7 @@ std::vector<SectionPlan> ending_lane(std::size_t count, double width, LaneType t
   auto& right = sections[1].right;
   right[count - 1].end_width = 0.0;
   // Lane changes are allowed out of the ending lane, but not into it.
-  right[count - 2].mark = make_mark("broken", LaneChange::increase);
+  right[count - 2].mark = make_mark("broken", LaneChangePermission::increase);
   right[count].next = -static_cast<int>(count);
   return sections;
 }

@@ -70,7 +70,7 @@ inline std::string document_text(odr::Document const& document) {
     for (auto const& element : road.rest.elements)
       if (element.name == "objects")
         for (auto const& child : element.children) objects += child.name == "object";
-    left_hand += road.rule == odr::TrafficRule::left_hand;
+    left_hand += road.rule == odr::DrivingSide::left_hand;
   }
   constexpr char const* words[] = {"default", "direct", "virtual", "crossing", "other"};
   for (auto const& junction : document.junctions) {

@@ -336,7 +336,7 @@ TEST_CASE("mirrored traffic, and left-hand traffic that keeps to its side, chang
   auto const left_hand_road = support::map_of({.id = "1",
                                                .line = cb::map::lay_from({}, {{3000.0}}),
                                                .sections = {{.left = cb::map::equal_lanes(3)}},
-                                               .rule = cb::map::opendrive::TrafficRule::left_hand});
+                                               .rule = cb::map::opendrive::DrivingSide::left_hand});
   for (bool const left_hand : {false, true}) {
     int changes = 0;
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {

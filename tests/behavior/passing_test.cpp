@@ -29,7 +29,7 @@ using Sim = Traffic<ALL_DRIVERS>;
 
 /// A road with lanes of a width, which bends from 100 m on; traffic drives to +x, on the right or on the left.
 std::shared_ptr<cb::Map const> street(double width, double curvature = 0.0, bool right_hand = true, int lanes = 1) {
-  using Rule = cb::map::opendrive::TrafficRule;
+  using Rule = cb::map::opendrive::DrivingSide;
   cb::map::RoadPlan road{.id = "1",
                          .line = cb::map::lay_from({}, {{100.0}, {1400.0, curvature, curvature}}),
                          .sections = {{}},

@@ -38,41 +38,41 @@ std::string message_for(OpenDriveDocument const& document) {
 TEST_CASE("a document made in code that lacks what a map needs is refused with the place and a remedy") {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   CHECK(message_for(sound_document()) == "no error");
-  using Harm = void (*)(opendrive::Road&);
+  using Harm = void (*)(opendrive::RoadElement&);
   std::vector<std::pair<Harm, std::string>> const harms{
-      {[](opendrive::Road& r) { r.geometries.clear(); }, "no geometry"},
-      {[](opendrive::Road& r) { r.lane_sections.clear(); }, "no lane section"},
-      {[](opendrive::Road& r) { r.geometries[0].kind = GeometryKind::cubic; }, "without its curve"},
-      {[](opendrive::Road& r) { r.geometries[0].x = nan; }, "not finite"},
-      {[](opendrive::Road& r) { r.geometries[1].heading = infinity; }, "not finite"},
-      {[](opendrive::Road& r) { r.geometries[1].length = -1.0; }, "negative"},
-      {[](opendrive::Road& r) { r.geometries[1].y = nan; }, "not finite"},
-      {[](opendrive::Road& r) { r.geometries[1].curvature_end = nan; }, "not finite"},
-      {[](opendrive::Road& r) {
+      {[](opendrive::RoadElement& r) { r.geometries.clear(); }, "no geometry"},
+      {[](opendrive::RoadElement& r) { r.lane_sections.clear(); }, "no lane section"},
+      {[](opendrive::RoadElement& r) { r.geometries[0].kind = GeometryKind::cubic; }, "without its curve"},
+      {[](opendrive::RoadElement& r) { r.geometries[0].x = nan; }, "not finite"},
+      {[](opendrive::RoadElement& r) { r.geometries[1].heading = infinity; }, "not finite"},
+      {[](opendrive::RoadElement& r) { r.geometries[1].length = -1.0; }, "negative"},
+      {[](opendrive::RoadElement& r) { r.geometries[1].y = nan; }, "not finite"},
+      {[](opendrive::RoadElement& r) { r.geometries[1].curvature_end = nan; }, "not finite"},
+      {[](opendrive::RoadElement& r) {
          r.types.emplace_back();
          r.types[0].s = nan;
        },
        "speed of the road is not a number"},
-      {[](opendrive::Road& r) { r.geometries[1].length = 1e9; }, "beyond 1000 km"},
-      {[](opendrive::Road& r) { r.geometries[1].curvature_end = 1e6; }, "100 rad"},
-      {[](opendrive::Road& r) { r.geometries[1].curvature_start = nan; }, "not finite"},
-      {[](opendrive::Road& r) { std::swap(r.geometries[0], r.geometries[1]); }, "order of s"},
-      {[](opendrive::Road& r) { r.lane_sections[0].s = nan; }, "order of s"},
-      {[](opendrive::Road& r) { r.lane_sections[0].lanes[1].widths[0].a = nan; }, "width is not finite"},
-      {[](opendrive::Road& r) { r.lane_sections[0].lanes[1].id = 0; }, "left to right"},
-      {[](opendrive::Road& r) {
+      {[](opendrive::RoadElement& r) { r.geometries[1].length = 1e9; }, "beyond 1000 km"},
+      {[](opendrive::RoadElement& r) { r.geometries[1].curvature_end = 1e6; }, "100 rad"},
+      {[](opendrive::RoadElement& r) { r.geometries[1].curvature_start = nan; }, "not finite"},
+      {[](opendrive::RoadElement& r) { std::swap(r.geometries[0], r.geometries[1]); }, "order of s"},
+      {[](opendrive::RoadElement& r) { r.lane_sections[0].s = nan; }, "order of s"},
+      {[](opendrive::RoadElement& r) { r.lane_sections[0].lanes[1].widths[0].a = nan; }, "width is not finite"},
+      {[](opendrive::RoadElement& r) { r.lane_sections[0].lanes[1].id = 0; }, "left to right"},
+      {[](opendrive::RoadElement& r) {
          r.lane_sections[0].lanes[1].speeds = {{nan, 10.0}};
        },
        "speed of a lane is not a number"},
-      {[](opendrive::Road& r) {
+      {[](opendrive::RoadElement& r) {
          r.elevation = {{0.0, infinity, 0.0, 0.0, 0.0}};
        },
        "of the road is not finite"},
-      {[](opendrive::Road& r) {
+      {[](opendrive::RoadElement& r) {
          r.lane_offset = {{nan, 0.0, 0.0, 0.0, 0.0}};
        },
        "of the road is not finite"},
-      {[](opendrive::Road& r) { r.id = "1"; }, "same id"},
+      {[](opendrive::RoadElement& r) { r.id = "1"; }, "same id"},
   };
   for (auto const& [harm, sentence] : harms) {
     CAPTURE(sentence);
@@ -117,7 +117,7 @@ TEST_CASE("a finite number beyond any road costs its element, not the map") {
           d.roads[0].shape = {{0.0, r}};
         }),
         Harm([](auto&d, auto&r) { d.roads[0].lane_sections[0].lanes[1].widths.push_back(r); }), Harm([](auto&d, auto&) {
-          opendrive::LaneHeight height;
+          opendrive::HeightRecord height;
           height.inner = height.outer = huge;
           d.roads[0].lane_sections[0].lanes[1].heights = {height};
         }),

@@ -169,12 +169,12 @@ struct Plain {
   [[nodiscard]] bool permits(int to) const {
     bool const away = std::abs(to) > std::abs(lane.number);
     int const border = to * lane.number < 0 ? 0 : (away ? lane.number : to);
-    auto change = opendrive::LaneChange::both;
+    auto change = opendrive::LaneChangePermission::both;
     for (auto const& mark : section().find(border)->road_marks)
       if (section().s + mark.s_offset <= s) change = mark.lane_change;
-    if (change == opendrive::LaneChange::increase) return to > lane.number;
-    if (change == opendrive::LaneChange::decrease) return to < lane.number;
-    return change != opendrive::LaneChange::none;
+    if (change == opendrive::LaneChangePermission::increase) return to > lane.number;
+    if (change == opendrive::LaneChangePermission::decrease) return to < lane.number;
+    return change != opendrive::LaneChangePermission::none;
   }
   /// Whether a record begins near by, so that rounding decides.
   [[nodiscard]] bool is_doubtful() const {

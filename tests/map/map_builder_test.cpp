@@ -79,7 +79,7 @@ MapBuilder crossing(int mirror) {
     auto const at = geometry::to_map({0, 0, angle}, {25.0, 0.0});
     auto arm = straight(std::to_string(i + 1), {}, 1.0, 2, 2);
     arm.line = lay_to({at.x(), at.y(), angle + pi}, {{50.0}});
-    if (mirror < 0) arm.rule = opendrive::TrafficRule::left_hand;
+    if (mirror < 0) arm.rule = opendrive::DrivingSide::left_hand;
     builder.add_road(arm);
   }
   for (int i = 0; i < 4; ++i) {
@@ -101,7 +101,7 @@ TEST_CASE("a road in three lines") {
   REQUIRE(map->lanes().size() == 2);
   CHECK(map->lanes()[0].path.pose(100.0).y == doctest::Approx(-1.75));
   CHECK(map->lanes()[1].left_neighbor == map->lanes()[0].id);
-  CHECK(builder.road("1").lane_sections[0].lanes[1].road_marks[0].lane_change == opendrive::LaneChange::both);
+  CHECK(builder.road("1").lane_sections[0].lanes[1].road_marks[0].lane_change == opendrive::LaneChangePermission::both);
 }
 
 TEST_CASE("ids are numbers of their own where none are given") {

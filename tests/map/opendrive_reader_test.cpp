@@ -96,11 +96,11 @@ TEST_CASE("a file without fault is read as it is written, without a finding") {
   CHECK(r.document.header.rev_minor == 6);
   CHECK(r.document.header.rest.find_attribute("west")->value == "4");
   REQUIRE(r.document.roads.size() == 2);
-  opendrive::Road const& road = r.document.roads[0];
+  opendrive::RoadElement const& road = r.document.roads[0];
   CHECK(road.id == "1");
   CHECK(road.name == "first");
   CHECK(road.junction.empty());
-  CHECK(road.rule == opendrive::TrafficRule::right_hand);
+  CHECK(road.rule == opendrive::DrivingSide::right_hand);
   CHECK(road.line == 4);
   CHECK_FALSE(road.predecessor.has_value());
   REQUIRE(road.successor.has_value());
@@ -114,9 +114,9 @@ TEST_CASE("a file without fault is read as it is written, without a finding") {
   CHECK(road.geometry_lines[1] == 9);
   CHECK(road.elevation == std::vector<CubicRecord>{{0.0, 1.0, 0.1}});
   CHECK(road.lane_offset == std::vector<CubicRecord>{{0.0, 0.5}});
-  opendrive::Road const& second = r.document.roads[1];
+  opendrive::RoadElement const& second = r.document.roads[1];
   CHECK(second.junction == "7");
-  CHECK(second.rule == opendrive::TrafficRule::left_hand);
+  CHECK(second.rule == opendrive::DrivingSide::left_hand);
   CHECK(second.geometries[0].kind == GeometryKind::spiral);
   REQUIRE(r.document.junctions.size() == 1);
   REQUIRE(r.document.junctions[0].connections.size() == 1);
@@ -130,7 +130,7 @@ TEST_CASE("lanes keep their types, links, widths, marks and limits") {
   opendrive::LaneSection const& section = r.document.roads[0].lane_sections[0];
   REQUIRE(section.lanes.size() == 3);
   CHECK(section.lanes[0].id == 0);
-  opendrive::Lane const& lane = section.lanes[1];
+  opendrive::LaneElement const& lane = section.lanes[1];
   CHECK(lane.id == -1);
   CHECK(lane.type == LaneType::driving);
   CHECK(lane.successors == std::vector{-1});
@@ -138,7 +138,7 @@ TEST_CASE("lanes keep their types, links, widths, marks and limits") {
   CHECK(lane.widths == std::vector<CubicRecord>{{0.0, 3.5}});
   REQUIRE(lane.road_marks.size() == 1);
   CHECK(lane.road_marks[0].type == "broken");
-  CHECK(lane.road_marks[0].lane_change == opendrive::LaneChange::both);
+  CHECK(lane.road_marks[0].lane_change == opendrive::LaneChangePermission::both);
   REQUIRE(lane.speeds.size() == 1);
   CHECK(lane.speeds[0].s == 5.0);
   CHECK(lane.speeds[0].limit == 10.0);

@@ -121,13 +121,13 @@ TEST_CASE("profiles and lanes keep heights, crossfall and shape") {
   CHECK(road.shape == std::vector<opendrive::LateralShape>{{0.0, {-2.0, 0.2}}});
   CHECK(road.superelevation == std::vector<CubicRecord>{{0.0, 0.3}});
   auto const& lane = *road.lane_sections.at(0).find(-1);
-  CHECK(lane.heights == std::vector<opendrive::LaneHeight>{{1.0, 0.1, 0.2}});
+  CHECK(lane.heights == std::vector<opendrive::HeightRecord>{{1.0, 0.1, 0.2}});
   for (std::size_t i = 0; i < 3; ++i)
     CHECK(lane.rest.elements.at(i).name == std::array{"access", "rule", "material"}[i]);
   auto const& mark = lane.road_marks.at(0);
   CHECK(mark.weight == "bold");
   CHECK(mark.rest.attributes == std::vector<opendrive::Attribute>{{"material", "paint"}, {"height", "0.02"}});
-  CHECK(mark.lane_change == opendrive::LaneChange::none);
+  CHECK(mark.lane_change == opendrive::LaneChangePermission::none);
   REQUIRE(mark.rest.elements.size() == 2);
   CHECK(mark.rest.elements[0].children.at(0).attributes.at(0).value == "1");
   CHECK(read(write_opendrive(r.document)).document == r.document);

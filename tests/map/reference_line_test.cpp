@@ -168,7 +168,7 @@ TEST_CASE("advancing along a geometry, forwards or back, gives the same points a
 }
 
 TEST_CASE("the header's offset translates first and then rotates about the map's origin") {
-  opendrive::Road road;
+  opendrive::RoadElement road;
   road.geometries = {{0.0, 1.0, 0.0, 0.0, 10.0, GeometryKind::line, 0.0, 0.0}};
   ReferenceLine const line = make_reference_line(road, {2.0, 1.0, 0.0, std::numbers::pi / 2.0});
   CHECK(line.at(0.0).x == doctest::Approx(-1.0));

@@ -32,10 +32,10 @@ inline void negate_lanes(opendrive::LaneSection& section) {
   for (auto& lane : section.lanes) {
     lane.id = -lane.id;
     for (auto& mark : lane.road_marks) {
-      if (mark.lane_change == opendrive::LaneChange::increase)
-        mark.lane_change = opendrive::LaneChange::decrease;
-      else if (mark.lane_change == opendrive::LaneChange::decrease)
-        mark.lane_change = opendrive::LaneChange::increase;
+      if (mark.lane_change == opendrive::LaneChangePermission::increase)
+        mark.lane_change = opendrive::LaneChangePermission::decrease;
+      else if (mark.lane_change == opendrive::LaneChangePermission::decrease)
+        mark.lane_change = opendrive::LaneChangePermission::increase;
     }
     lane.borders = negated(lane.borders);
   }
@@ -60,8 +60,8 @@ inline OpenDriveDocument mirrored(OpenDriveDocument document) {
   document.header.offset.y = -document.header.offset.y;
   document.header.offset.heading = -document.header.offset.heading;
   for (auto& road : document.roads) {
-    road.rule = road.rule == opendrive::TrafficRule::right_hand ? opendrive::TrafficRule::left_hand
-                                                                : opendrive::TrafficRule::right_hand;
+    road.rule = road.rule == opendrive::DrivingSide::right_hand ? opendrive::DrivingSide::left_hand
+                                                                : opendrive::DrivingSide::right_hand;
     for (auto& g : road.geometries) g = mirrored(g);
     road.lane_offset = negated(road.lane_offset);
     for (auto& section : road.lane_sections) {
@@ -114,7 +114,7 @@ inline Geometry reversed(Geometry g, double road_length) {
   return g;
 }
 
-inline void reverse(opendrive::Road& road) {
+inline void reverse(opendrive::RoadElement& road) {
   double const length = road.geometry_length();
   for (auto& g : road.geometries) g = reversed(g, length);
   std::reverse(road.geometries.begin(), road.geometries.end());

@@ -34,12 +34,12 @@ namespace cambium::map {
 
 namespace detail {
 
-[[nodiscard]] inline bool runs_both_ways(opendrive::Lane const& lane) {
+[[nodiscard]] inline bool runs_both_ways(opendrive::LaneElement const& lane) {
   return lane.direction == opendrive::LaneDirection::both || lane.type == LaneType::bidirectional;
 }
 
 /// A lane of a road's section `k` as it is driven, without id, geometry and links.
-[[nodiscard]] inline Lane unsampled_lane(opendrive::Lane const& written, Road const& road, std::size_t k) {
+[[nodiscard]] inline Lane unsampled_lane(opendrive::LaneElement const& written, Road const& road, std::size_t k) {
   Lane lane;
   lane.road = road.id;
   lane.section = static_cast<std::uint32_t>(k);
@@ -142,7 +142,7 @@ class MapBuild {
     return parts_.roads[index_of(lane.road)].elevation.value(lane.station_at(s));
   }
 
-  void add_section(opendrive::Road const& source, Road& road, std::size_t k) {
+  void add_section(opendrive::RoadElement const& source, Road& road, std::size_t k) {
     auto& section = road.sections[k];
     if (section.lanes.empty() || section.end - section.begin < shortest_section) return;
     auto const cross_sections = SectionSampler(road, section, parts_.options).sample();

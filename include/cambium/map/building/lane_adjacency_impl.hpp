@@ -43,7 +43,7 @@ class AdjacencyList {
         for (auto const& next : others) add(at, lane.id, next, to, {});
   }
 
-  void add_connection(opendrive::Junction const& junction, opendrive::Connection const& connection) {
+  void add_connection(opendrive::JunctionElement const& junction, opendrive::Connection const& connection) {
     auto const entry = links_.entry_of(connection);
     if (!entry) return;
     for (auto const& exit : links_.exits_of(junction, connection, *entry))

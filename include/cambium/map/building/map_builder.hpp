@@ -75,8 +75,8 @@ class MapBuilder {
   [[nodiscard]] opendrive::Document& document();
 
   /// A road of the document, whose id is to be left as it is. Throws `MapError` where there is none of that id. O(1).
-  [[nodiscard]] opendrive::Road& road(std::string const& id) { return index_.road(document_, id); }
-  [[nodiscard]] opendrive::Road const& road(std::string const& id) const { return index_.road(document_, id); }
+  [[nodiscard]] opendrive::RoadElement& road(std::string const& id) { return index_.road(document_, id); }
+  [[nodiscard]] opendrive::RoadElement const& road(std::string const& id) const { return index_.road(document_, id); }
 
   /// The map of what has been made so far, checked as a file would be; what is odd goes to `diagnostics`. Throws
   /// `MapError` where there is no road or no lane, and as `build_map`, and `ParameterError` for options out of range.
@@ -91,7 +91,7 @@ class MapBuilder {
   [[nodiscard]] RoadPlan turn_plan(RoadEnd const& from, RoadEnd const& to,
                                    std::vector<opendrive::LaneLink> const& lanes, TurnPlan plan) const;
 
-  [[nodiscard]] opendrive::Road const& checked(RoadEnd const& end) const;
+  [[nodiscard]] opendrive::RoadElement const& checked(RoadEnd const& end) const;
 
   opendrive::Document document_;
   detail::DocumentIndex index_;

@@ -50,7 +50,7 @@ CAMBIUM_COLD std::string MapBuilder::add_junction(std::string id, std::string na
   if (id.empty()) id = index_.free_id(document_);
   check_id("junction", id);
   if (index_.has_junction(id)) throw MapError("junction " + id, "this id is already in use", "give another id");
-  opendrive::Junction junction;
+  opendrive::JunctionElement junction;
   junction.id = id;
   junction.name = std::move(name);
   document_.junctions.push_back(std::move(junction));
@@ -142,7 +142,7 @@ CAMBIUM_COLD void MapBuilder::check_id(std::string const& what, std::string cons
 
 CAMBIUM_COLD RoadPlan MapBuilder::turn_plan(RoadEnd const& from, RoadEnd const& to,
                                             std::vector<opendrive::LaneLink> const& lanes, TurnPlan plan) const {
-  bool const left_hand = checked(from).rule == opendrive::TrafficRule::left_hand;
+  bool const left_hand = checked(from).rule == opendrive::DrivingSide::left_hand;
   auto begin = lane_pose(from, lanes.front().from), end = lane_pose(to, lanes.front().to);
   end.heading += geometry::pi;
   RoadPlan road{.id = std::move(plan.id), .name = std::move(plan.name)};
@@ -150,7 +150,7 @@ CAMBIUM_COLD RoadPlan MapBuilder::turn_plan(RoadEnd const& from, RoadEnd const& 
   road.rule = checked(from).rule;
   road.speed_limit = plan.speed_limit;
   double const length = road.line.back().s + road.line.back().length;
-  auto const unmarked = make_mark("none", opendrive::LaneChange::none);
+  auto const unmarked = make_mark("none", opendrive::LaneChangePermission::none);
   SectionPlan section{.middle_mark = unmarked};
   auto& side = left_hand ? section.left : section.right;
   for (auto const& link : lanes)
@@ -164,7 +164,7 @@ CAMBIUM_COLD RoadPlan MapBuilder::turn_plan(RoadEnd const& from, RoadEnd const& 
   return road;
 }
 
-CAMBIUM_COLD opendrive::Road const& MapBuilder::checked(RoadEnd const& end) const {
+CAMBIUM_COLD opendrive::RoadElement const& MapBuilder::checked(RoadEnd const& end) const {
   if (end.end == opendrive::ContactPoint::none)
     throw MapError("road " + end.road, "its end is not specified", "name start or end");
   return road(end.road);

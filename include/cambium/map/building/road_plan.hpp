@@ -42,7 +42,7 @@ struct RoadPlan {
   std::vector<CubicRecord> lane_offset{};  ///< t of the border between left and right lanes; sorted
   std::string type{};                      ///< OpenDRIVE's word, such as "town", "rural", "motorway"
   std::optional<double> speed_limit{};     ///< [m/s]
-  opendrive::TrafficRule rule = opendrive::TrafficRule::right_hand;
+  opendrive::DrivingSide rule = opendrive::DrivingSide::right_hand;
   std::string junction{};  ///< the junction that it is a connecting road of; empty: none
 };
 
@@ -59,7 +59,7 @@ struct RoadEnd {
                                                 LaneType type = LaneType::driving);
 
 /// A white mark, 0.15 m wide where it is not "none".
-[[nodiscard]] opendrive::RoadMark make_mark(std::string type, opendrive::LaneChange lane_change);
+[[nodiscard]] opendrive::RoadMark make_mark(std::string type, opendrive::LaneChangePermission lane_change);
 
 /// From `from` at station `s` to `to` `length` [m] further on, with slope 0 at both.
 [[nodiscard]] CubicRecord smooth_step(double s, double from, double to, double length);

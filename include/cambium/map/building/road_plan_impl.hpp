@@ -19,7 +19,7 @@ CAMBIUM_COLD std::vector<LanePlan> equal_lanes(std::size_t count, double width, 
   return std::vector<LanePlan>(count, LanePlan{.type = type, .width = width});
 }
 
-CAMBIUM_COLD opendrive::RoadMark make_mark(std::string type, opendrive::LaneChange lane_change) {
+CAMBIUM_COLD opendrive::RoadMark make_mark(std::string type, opendrive::LaneChangePermission lane_change) {
   opendrive::RoadMark mark;
   mark.width = type == "none" ? 0.0 : 0.15;
   mark.type = std::move(type);

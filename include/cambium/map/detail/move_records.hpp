@@ -53,12 +53,12 @@ inline void move_start(std::vector<opendrive::Element>& elements, double shift) 
 }
 
 /// The same for all records of a lane.
-inline void move_records(opendrive::Lane& lane, double shift) {
+inline void move_records(opendrive::LaneElement& lane, double shift) {
   move_start(lane.widths, &CubicRecord::s, shift);
   move_start(lane.borders, &CubicRecord::s, shift);
   move_start(lane.road_marks, &opendrive::RoadMark::s_offset, shift);
   move_start(lane.speeds, &opendrive::SpeedRecord::s, shift);
-  move_start(lane.heights, &opendrive::LaneHeight::s_offset, shift);
+  move_start(lane.heights, &opendrive::HeightRecord::s_offset, shift);
   move_start(lane.rest.elements, shift);
 }
 

@@ -50,7 +50,7 @@ class RequireBuildable {
     if (!holds) throw MapError(where_, what, remedy);
   }
 
-  void check_line(opendrive::Road const& road) const {
+  void check_line(opendrive::RoadElement const& road) const {
     for (auto const& g : road.geometries)
       if (auto const* const fault = fault_of(g))
         throw MapError(where_, std::string("a geometry: ") + fault, "see lay_from");
@@ -60,14 +60,14 @@ class RequireBuildable {
     require(road.geometry_length() > 0.0, "it has no geometry with a length", "lay out a line, see lay_from");
   }
 
-  void check_sections(opendrive::Road const& road) const {
+  void check_sections(opendrive::RoadElement const& road) const {
     require(!road.lane_sections.empty(), "it has no lane section", "add one at 0");
     for (std::size_t k = 0; k < road.lane_sections.size(); ++k) {
       auto const& section = road.lane_sections[k];
       require(std::isfinite(section.s) && (k == 0 || road.lane_sections[k - 1].s <= section.s),
               "its lane sections are not in the order of s", "sort them; s must be finite");
       bool const is_ordered = std::adjacent_find(section.lanes.begin(), section.lanes.end(),
-                                                 [](opendrive::Lane const& left, opendrive::Lane const& right) {
+                                                 [](opendrive::LaneElement const& left, opendrive::LaneElement const& right) {
                                                    return left.id <= right.id;
                                                  }) == section.lanes.end();
       require(is_ordered, "the lanes of a section are not ordered from left to right, or one occurs twice",
@@ -76,7 +76,7 @@ class RequireBuildable {
     }
   }
 
-  void check_lane(opendrive::Lane const& lane) const {
+  void check_lane(opendrive::LaneElement const& lane) const {
     check_records(lane.widths, "of a lane's width");
     check_records(lane.borders, "of a lane's border");
     for (auto const& height : lane.heights)

@@ -125,7 +125,7 @@ class LaneletMapMaker {
     if (plan.line.empty()) return;  // left out
     plan.id = std::to_string(groups_.lanelets[of.front()].id);
     auto& lanes = plan.sections.front().right;
-    plan.sections.front().middle_mark = make_mark("solid", opendrive::LaneChange::none);
+    plan.sections.front().middle_mark = make_mark("solid", opendrive::LaneChangePermission::none);
     for (std::size_t k = 0; k < of.size(); ++k) {
       auto const& lanelet = groups_.lanelets[of[k]];
       lanes[k].type = lanelet.type;
@@ -147,12 +147,12 @@ class LaneletMapMaker {
   }
 
   [[nodiscard]] static opendrive::RoadMark mark_between(Lanelet const& left, Lanelet const& right) {
-    using opendrive::LaneChange;
+    using opendrive::LaneChangePermission;
     bool const to_right = left.may_change_right, to_left = right.may_change_left;
-    if (to_right && to_left) return make_mark("broken", LaneChange::both);
-    if (to_right) return make_mark("solid broken", LaneChange::decrease);
-    if (to_left) return make_mark("broken solid", LaneChange::increase);
-    return make_mark("solid", LaneChange::none);
+    if (to_right && to_left) return make_mark("broken", LaneChangePermission::both);
+    if (to_right) return make_mark("solid broken", LaneChangePermission::decrease);
+    if (to_left) return make_mark("broken solid", LaneChangePermission::increase);
+    return make_mark("solid", LaneChangePermission::none);
   }
 
   /// Connects roads; all links between two of them at once.

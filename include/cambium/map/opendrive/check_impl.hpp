@@ -45,14 +45,14 @@ class DocumentCheck {
       findings_.add(Severity::warning, document_->header.line, "offset", "", "it is beyond any map; it was left out");
       document_->header.offset = {};
     }
-    std::erase_if(document_->roads, [this](opendrive::Road& road) {
+    std::erase_if(document_->roads, [this](opendrive::RoadElement& road) {
       return !is_whole(road) || !GeometryCheck(road, findings_).is_continuous() || !has_lanes(road);
     });
     index(document_->roads, roads_, "road", " occurs twice; the second one was left out");
     index(document_->junctions, junctions_, "junction", " occurs twice; the second one was left out");
-    for (opendrive::Road& road : document_->roads) check(road);
+    for (opendrive::RoadElement& road : document_->roads) check(road);
     auto const walked = junctions_to_walk();
-    for (opendrive::Junction const& junction : document_->junctions) {
+    for (opendrive::JunctionElement const& junction : document_->junctions) {
       if (junction.connections.empty() && !walked.contains(junction.id))
         findings_.add(Severity::warning, junction.line, "junction", "junction " + junction.id,
                       "it has no connection; no lane leads through it");
@@ -83,12 +83,12 @@ class DocumentCheck {
   /// The junctions with linked connecting roads, and no drivable lane on any: these need no connections.
   [[nodiscard]] IdPlaces junctions_to_walk() const {
     IdPlaces walked, driven;
-    for (opendrive::Road const& road : document_->roads) {
+    for (opendrive::RoadElement const& road : document_->roads) {
       if (road.junction.empty()) continue;
       bool const is_driven =
           std::any_of(road.lane_sections.begin(), road.lane_sections.end(), [](opendrive::LaneSection const& section) {
             return std::any_of(section.lanes.begin(), section.lanes.end(),
-                               [](opendrive::Lane const& lane) { return lane.id != 0 && is_drivable(lane.type); });
+                               [](opendrive::LaneElement const& lane) { return lane.id != 0 && is_drivable(lane.type); });
           });
       if (is_driven)
         driven.emplace(road.junction, 0);
@@ -99,7 +99,7 @@ class DocumentCheck {
     return walked;
   }
 
-  void check(opendrive::Road& road) {
+  void check(opendrive::RoadElement& road) {
     std::string const ids = "road " + road.id;
     check_length(road, ids);
     check_short_geometries(road, ids);
@@ -118,7 +118,7 @@ class DocumentCheck {
     RecordCheck(road, findings_).run();
   }
 
-  void check_length(opendrive::Road& road, std::string const& ids) {
+  void check_length(opendrive::RoadElement& road, std::string const& ids) {
     double const length = road.geometry_length();
     if (road.length < 0.0) {
       findings_.add(Severity::warning, road.line, "road", ids,
@@ -139,7 +139,7 @@ class DocumentCheck {
   }
 
   /// Geometries so short that they are probably a mistake; they are kept, and do no harm.
-  void check_short_geometries(opendrive::Road const& road, std::string const& ids) {
+  void check_short_geometries(opendrive::RoadElement const& road, std::string const& ids) {
     constexpr double short_one = 1e-9;  // [m]
     int count = 0, line = 0;
     for (std::size_t i = 0; i < road.geometries.size(); ++i)
@@ -152,7 +152,7 @@ class DocumentCheck {
   }
 
   /// False where all lane sections lie beyond the road's end.
-  [[nodiscard]] bool has_lanes(opendrive::Road const& road) {
+  [[nodiscard]] bool has_lanes(opendrive::RoadElement const& road) {
     opendrive::LaneSection const& first = road.lane_sections.front();
     if (first.s <= road.geometry_length()) return true;
     findings_.add(
@@ -162,7 +162,7 @@ class DocumentCheck {
   }
 
   /// Whether a road, which may have been made in code, has what every road has.
-  [[nodiscard]] bool is_whole(opendrive::Road& road) {
+  [[nodiscard]] bool is_whole(opendrive::RoadElement& road) {
     road.geometry_lines.resize(road.geometries.size());
     char const* fault = road.lane_sections.empty() ? "it has no lane section"
                         : road.geometries.empty()  ? "it has no geometry"
@@ -175,7 +175,7 @@ class DocumentCheck {
   }
 
   /// Leaves out sections beyond the road's end (the first one always stays) and looks at the links between the others.
-  void check_sections(opendrive::Road& road, std::string const& ids) {
+  void check_sections(opendrive::RoadElement& road, std::string const& ids) {
     while (road.lane_sections.size() > 1 && road.lane_sections.back().s > road.geometry_length() + 1e-9) {
       opendrive::LaneSection const& last = road.lane_sections.back();
       findings_.add(Severity::warning, last.line, "laneSection", ids,
@@ -186,7 +186,7 @@ class DocumentCheck {
       if (section.s >= 0.0) break;
       findings_.add(Severity::warning, section.line, "laneSection", ids,
                     "the section starts at " + rounded_text(section.s) + " m; it counts from the road's start on");
-      for (opendrive::Lane& lane : section.lanes) move_records(lane, -section.s);
+      for (opendrive::LaneElement& lane : section.lanes) move_records(lane, -section.s);
       section.s = 0.0;
     }
     if (road.lane_sections.front().s > 0.0)
@@ -199,27 +199,27 @@ class DocumentCheck {
 
   void check_lane_links(opendrive::LaneSection const& section, opendrive::LaneSection const& next,
                         std::string const& ids, std::size_t index) {
-    auto const dangling = [&](opendrive::Lane const& lane, int to, std::size_t where, char const* element) {
+    auto const dangling = [&](opendrive::LaneElement const& lane, int to, std::size_t where, char const* element) {
       findings_.add(Severity::warning, lane.line, element,
                     ids + ", section " + std::to_string(where) + ", lane " + std::to_string(lane.id),
                     "there is no lane " + std::to_string(to) + " in the adjacent section; the link leads nowhere");
     };
     auto const ids_of = [](opendrive::LaneSection const& of) {
       std::vector<int> numbers;
-      for (opendrive::Lane const& lane : of.lanes) numbers.push_back(lane.id);
+      for (opendrive::LaneElement const& lane : of.lanes) numbers.push_back(lane.id);
       std::sort(numbers.begin(), numbers.end());
       return numbers;
     };
     auto const here = ids_of(section), there = ids_of(next);
-    for (opendrive::Lane const& lane : section.lanes)
+    for (opendrive::LaneElement const& lane : section.lanes)
       for (int const to : lane.successors)
         if (!std::binary_search(there.begin(), there.end(), to)) dangling(lane, to, index, "successor");
-    for (opendrive::Lane const& lane : next.lanes)
+    for (opendrive::LaneElement const& lane : next.lanes)
       for (int const to : lane.predecessors)
         if (!std::binary_search(here.begin(), here.end(), to)) dangling(lane, to, index + 1, "predecessor");
   }
 
-  void check(opendrive::Junction const& junction, opendrive::Connection const& connection) {
+  void check(opendrive::JunctionElement const& junction, opendrive::Connection const& connection) {
     if (connection.predecessor || connection.successor) return;
     for (std::string const* id : {&connection.incoming_road, &connection.entered_road()})
       if (!roads_.contains(*id))

@@ -24,7 +24,7 @@ enum class ContactPoint { none, start, end };
 enum class ElementType { road, junction };
 
 /// Side of the road that traffic keeps to: right- or left-hand traffic.
-enum class TrafficRule { right_hand, left_hand };
+enum class DrivingSide { right_hand, left_hand };
 
 /// What a junction is: the words "default", "direct", "virtual" and "crossing"; `other` has its word in the rest.
 enum class JunctionType { standard, direct, virtual_, crossing, other };
@@ -50,7 +50,7 @@ struct Header {
   HeaderOffset offset;
   std::string geo_reference;  ///< projection string, empty when absent
   Rest rest;                  ///< version, date, bounds, user data, ...
-  Line line;                  ///< 0: the file has no header
+  FileLine line;                  ///< 0: the file has no header
 
   friend bool operator==(Header const&, Header const&) = default;
 };
@@ -63,7 +63,7 @@ struct RoadLink {
   ContactPoint contact_point = ContactPoint::none;  ///< always `none` for junctions
   std::optional<double> element_s{};                ///< [m]
   Rest rest{};
-  Line line{};
+  FileLine line{};
 
   friend bool operator==(RoadLink const&, RoadLink const&) = default;
 };
@@ -102,17 +102,17 @@ struct GeometryRest {
   friend bool operator==(GeometryRest const&, GeometryRest const&) = default;
 };
 
-struct Road {
+struct RoadElement {
   std::string id;
   std::string name;
   double length{};       ///< as written [m]; the geometry's length counts, see `geometry_length`
   std::string junction;  ///< the junction that this road is a connecting road of; empty: none (written as "-1")
-  TrafficRule rule = TrafficRule::right_hand;
+  DrivingSide rule = DrivingSide::right_hand;
   std::optional<RoadLink> predecessor;
   std::optional<RoadLink> successor;
   std::vector<RoadType> types;               ///< sorted
   std::vector<Geometry> geometries;          ///< sorted, at least one, header offset not applied
-  std::vector<Line> geometry_lines;          ///< of each geometry
+  std::vector<FileLine> geometry_lines;          ///< of each geometry
   std::vector<GeometryRest> geometry_rests;  ///< of the few geometries that have one, by rising index
   std::vector<CubicRecord> elevation;        ///< sorted; z(s) without the header offset
   std::vector<CubicRecord> superelevation;   ///< sorted [rad]
@@ -123,14 +123,14 @@ struct Road {
   std::vector<Signal> signals;
   std::vector<Signal> signal_references;
   Rest rest;  ///< objects, surface, railroad, user data, ...
-  Line line;
+  FileLine line;
 
   /// Where the last geometry ends [m].
   [[nodiscard]] double geometry_length() const {
     return geometries.empty() ? 0.0 : geometries.back().s + geometries.back().length;
   }
 
-  friend bool operator==(Road const&, Road const&) = default;
+  friend bool operator==(RoadElement const&, RoadElement const&) = default;
 };
 
 struct LaneLink {
@@ -152,7 +152,7 @@ struct Connection {
   std::optional<RoadLink> predecessor;  ///< of virtual connections
   std::optional<RoadLink> successor;    ///< of virtual connections
   Rest rest;
-  Line line;
+  FileLine line;
 
   /// The road that the connection leads into: the connecting one, or the linked one of a direct junction.
   [[nodiscard]] std::string const& entered_road() const {
@@ -171,22 +171,22 @@ struct Priority {
   friend bool operator==(Priority const&, Priority const&) = default;
 };
 
-struct Junction {
+struct JunctionElement {
   std::string id;
   std::string name;
   JunctionType type = JunctionType::standard;
   std::vector<Connection> connections;
   std::vector<Priority> priorities;
   Rest rest;  ///< controllers, crossing paths, the main road of a virtual junction, ...
-  Line line;
+  FileLine line;
 
-  friend bool operator==(Junction const&, Junction const&) = default;
+  friend bool operator==(JunctionElement const&, JunctionElement const&) = default;
 };
 
 struct Document {
   Header header;
-  std::vector<Road> roads;
-  std::vector<Junction> junctions;
+  std::vector<RoadElement> roads;
+  std::vector<JunctionElement> junctions;
   std::vector<Controller> controllers;
   Rest rest;  ///< the root's attributes; junction groups, stations, user data, ...
 
@@ -206,7 +206,7 @@ struct Document {
 }
 
 /// The road's reference line in the map frame, header offset applied.
-[[nodiscard]] inline ReferenceLine make_reference_line(Road const& road, HeaderOffset const& offset) {
+[[nodiscard]] inline ReferenceLine make_reference_line(RoadElement const& road, HeaderOffset const& offset) {
   std::vector<Geometry> geometries;
   geometries.reserve(road.geometries.size());
   for (Geometry const& g : road.geometries) geometries.push_back(with_offset(g, offset));

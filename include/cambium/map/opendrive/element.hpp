@@ -8,15 +8,15 @@
 namespace cambium::map::opendrive {
 
 /// A line of the file, the first is 1; 0: unknown. It says where something was written, not what: any two are equal.
-struct Line {
+struct FileLine {
   int value = 0;
 
-  constexpr Line() = default;
-  constexpr Line(int line) : value(line) {}
+  constexpr FileLine() = default;
+  constexpr FileLine(int line) : value(line) {}
   constexpr operator int() const { return value; }
 
   // For two lines only: with a number, a line compares as the number that it is.
-  template <std::same_as<Line> L>
+  template <std::same_as<FileLine> L>
   friend constexpr bool operator==(L, L) {
     return true;
   }

@@ -12,7 +12,7 @@
 namespace cambium::map::opendrive {
 
 /// Across which side of a road mark lanes may be changed; `unspecified`: not written (the standard then means `both`).
-enum class LaneChange { unspecified, both, increase, decrease, none };
+enum class LaneChangePermission { unspecified, both, increase, decrease, none };
 
 /// Driving direction of a lane relative to what traffic rule and side say (revision 1.8).
 enum class LaneDirection { standard, reversed, both };
@@ -34,7 +34,7 @@ struct RoadMark {
   std::string type;   ///< e.g. "broken", "solid solid"
   std::string color;
   double width{};  ///< [m], 0: not written
-  LaneChange lane_change = LaneChange::unspecified;
+  LaneChangePermission lane_change = LaneChangePermission::unspecified;
   std::string weight{};  ///< "standard", "bold" or empty
   Rest rest{};           ///< the single lines, sway, material, height
 
@@ -42,16 +42,16 @@ struct RoadMark {
 };
 
 /// Height of a lane above the plane of the road, as on a kerb.
-struct LaneHeight {
+struct HeightRecord {
   double s_offset{};  ///< from the section's start [m]
   double inner{};     ///< at the border towards lane 0 [m]
   double outer{};     ///< [m]
   Rest rest{};
 
-  friend bool operator==(LaneHeight const&, LaneHeight const&) = default;
+  friend bool operator==(HeightRecord const&, HeightRecord const&) = default;
 };
 
-struct Lane {
+struct LaneElement {
   int id = 0;  ///< left > 0, right < 0, counted from the centre lane 0
   LaneType type = LaneType::none;
   LaneDirection direction = LaneDirection::standard;
@@ -61,23 +61,23 @@ struct Lane {
   std::vector<CubicRecord> borders;  ///< sorted; outer border's t, in force only where there are no widths
   std::vector<RoadMark> road_marks;  ///< of the outer border (lane 0: of the centre line), sorted
   std::vector<SpeedRecord> speeds;   ///< sorted; s counts from the section's start
-  std::vector<LaneHeight> heights;   ///< sorted
+  std::vector<HeightRecord> heights;   ///< sorted
   Rest rest;                         ///< who may use it, rules, materials, user data, ...
-  Line line;
+  FileLine line;
 
-  friend bool operator==(Lane const&, Lane const&) = default;
+  friend bool operator==(LaneElement const&, LaneElement const&) = default;
 };
 
 struct LaneSection {
   double s{};                ///< start station [m]
   bool single_side = false;  ///< it speaks only for the sides that it has lanes for; the reader adds the other's
-  std::vector<Lane> lanes;   ///< from left to right: descending ids, unique; lane 0 is always there
+  std::vector<LaneElement> lanes;   ///< from left to right: descending ids, unique; lane 0 is always there
   Rest rest;
-  Line line;
+  FileLine line;
 
   /// The lane of that id, null when there is none.
-  [[nodiscard]] Lane const* find(int id) const {
-    for (Lane const& lane : lanes)
+  [[nodiscard]] LaneElement const* find(int id) const {
+    for (LaneElement const& lane : lanes)
       if (lane.id == id) return &lane;
     return nullptr;
   }

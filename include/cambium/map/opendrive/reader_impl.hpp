@@ -56,7 +56,7 @@ inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::Hea
   return header;
 }
 
-inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
+inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opendrive::RoadElement& road) {
   for_each_child(road_node, "type", [&](pugi::xml_node node) {
     opendrive::RoadType& type = road.types.emplace_back();
     auto const is_speed = [](pugi::xml_node, std::string_view name) { return name == "speed"; };
@@ -69,7 +69,7 @@ inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opend
   sort_records(context, road_node, road.types, &opendrive::RoadType::s, "road types");
 }
 
-inline void read_elevation(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
+inline void read_elevation(XmlContext& context, pugi::xml_node road_node, opendrive::RoadElement& road) {
   pugi::xml_node const node = find_only_child(context, road_node, "elevationProfile");
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name == "elevation") append_cubic(context, child, "s", road.elevation);
@@ -79,7 +79,7 @@ inline void read_elevation(XmlContext& context, pugi::xml_node road_node, opendr
 }
 
 inline void read_lateral_record(XmlContext& context, pugi::xml_node node, std::string_view name,
-                                opendrive::Road& road) {
+                                opendrive::RoadElement& road) {
   if (name == "superelevation") return append_cubic(context, node, "s", road.superelevation);
   if (name == "crossfall") {
     std::optional<CubicRecord> const record = read_cubic(context, node, "s", "side");
@@ -92,7 +92,7 @@ inline void read_lateral_record(XmlContext& context, pugi::xml_node node, std::s
   if (record && s) road.shape.push_back({*s, *record});
 }
 
-inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
+inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, opendrive::RoadElement& road) {
   pugi::xml_node const node = find_only_child(context, road_node, "lateralProfile");
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "superelevation" && name != "crossfall" && name != "shape") return false;
@@ -106,7 +106,7 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
 }
 
 /// False when there is no usable lane section.
-[[nodiscard]] inline bool read_lanes(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
+[[nodiscard]] inline bool read_lanes(XmlContext& context, pugi::xml_node road_node, opendrive::RoadElement& road) {
   pugi::xml_node const node = find_only_child(context, road_node, "lanes");
   std::size_t index = 0;
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {
@@ -126,7 +126,7 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
   return !road.lane_sections.empty();
 }
 
-inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
+inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendrive::RoadElement& road) {
   pugi::xml_node const node = find_only_child(context, road_node, "signals");
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "signal" && name != "signalReference") return false;
@@ -137,7 +137,7 @@ inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendriv
 }
 
 /// False when the road is unusable.
-[[nodiscard]] inline bool read_road(XmlContext& context, pugi::xml_node node, opendrive::Road& road) {
+[[nodiscard]] inline bool read_road(XmlContext& context, pugi::xml_node node, opendrive::RoadElement& road) {
   road.length = -1.0;  // missing
   if (!read_attributes(context, node, road)) {
     context.report(Severity::warning, node, "the road was left out because it has no id");

@@ -72,7 +72,7 @@ inline void write_geometry(XmlText& xml, Geometry const& g, opendrive::Rest cons
   });
 }
 
-inline void write_plan_view(XmlText& xml, opendrive::Road const& road) {
+inline void write_plan_view(XmlText& xml, opendrive::RoadElement const& road) {
   write_container(xml, "planView", road.rest, true, [&] {
     opendrive::Rest const nothing;
     auto rest = road.geometry_rests.begin();
@@ -84,7 +84,7 @@ inline void write_plan_view(XmlText& xml, opendrive::Road const& road) {
   });
 }
 
-inline void write_road_links(XmlText& xml, opendrive::Road const& road) {
+inline void write_road_links(XmlText& xml, opendrive::RoadElement const& road) {
   write_container(xml, "link", road.rest, road.predecessor || road.successor, [&] {
     if (road.predecessor) write_leaf(xml, "predecessor", *road.predecessor);
     if (road.successor) write_leaf(xml, "successor", *road.successor);
@@ -99,7 +99,7 @@ inline void write_road_type(XmlText& xml, opendrive::RoadType const& type) {
   });
 }
 
-inline void write_profiles(XmlText& xml, opendrive::Road const& road) {
+inline void write_profiles(XmlText& xml, opendrive::RoadElement const& road) {
   write_container(xml, "elevationProfile", road.rest, !road.elevation.empty(),
                   [&] { write_cubics(xml, "elevation", "s", road.elevation); });
   bool const is_flat = road.superelevation.empty() && road.crossfall.empty() && road.shape.empty();
@@ -131,7 +131,7 @@ void write_with(XmlText& xml, std::string_view name, std::vector<T> const& all, 
 }
 
 /// Objects, which are nothing but rest, stand before the signals.
-inline void write_objects_and_signals(XmlText& xml, opendrive::Road const& road) {
+inline void write_objects_and_signals(XmlText& xml, opendrive::RoadElement const& road) {
   for (opendrive::Element const& element : road.rest.elements)
     if (element.name == "objects") write_element(xml, element);
   bool const needed = !road.signals.empty() || !road.signal_references.empty();
@@ -141,7 +141,7 @@ inline void write_objects_and_signals(XmlText& xml, opendrive::Road const& road)
   });
 }
 
-inline void write_road(XmlText& xml, opendrive::Road const& road) {
+inline void write_road(XmlText& xml, opendrive::RoadElement const& road) {
   xml.element("road", [&] {
     write_attributes(xml, road);
     write_road_links(xml, road);
@@ -168,7 +168,7 @@ inline void write_connection(XmlText& xml, opendrive::Connection const& connecti
   });
 }
 
-inline void write_junction(XmlText& xml, opendrive::Junction const& junction) {
+inline void write_junction(XmlText& xml, opendrive::JunctionElement const& junction) {
   xml.element("junction", [&] {
     write_attributes(xml, junction);
     for (opendrive::Connection const& connection : junction.connections) write_connection(xml, connection);
@@ -185,9 +185,9 @@ CAMBIUM_COLD std::string write_opendrive(OpenDriveDocument const& document) {
     for (opendrive::Attribute const& a : document.rest.attributes) xml.attribute(a.name, a.value);
     if (document.header.line != 0 || !(document.header == opendrive::Header{}))
       detail::write_header(xml, document.header);
-    for (opendrive::Road const& road : document.roads) detail::write_road(xml, road);
+    for (opendrive::RoadElement const& road : document.roads) detail::write_road(xml, road);
     detail::write_with(xml, "controller", document.controllers, "control", &opendrive::Controller::controls);
-    for (opendrive::Junction const& junction : document.junctions) detail::write_junction(xml, junction);
+    for (opendrive::JunctionElement const& junction : document.junctions) detail::write_junction(xml, junction);
     detail::write_rest(xml, document.rest);
   });
   return xml.take();

@@ -88,8 +88,8 @@ class DocumentIndex {
     return elements[place];
   }
 
-  IdIndex<opendrive::Road> roads_;
-  IdIndex<opendrive::Junction> junctions_;
+  IdIndex<opendrive::RoadElement> roads_;
+  IdIndex<opendrive::JunctionElement> junctions_;
   std::size_t free_ = 1;  ///< the numbers before are taken, or were
 };
 

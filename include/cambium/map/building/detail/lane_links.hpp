@@ -130,7 +130,7 @@ class LaneLinker {
     }
   }
 
-  void link_lane(SectionEnd const& at, opendrive::Lane const& lane, std::vector<int> const& numbers,
+  void link_lane(SectionEnd const& at, opendrive::LaneElement const& lane, std::vector<int> const& numbers,
                  SectionEnds const& others) {
     if (others.empty()) return;
     for (int const number : numbers) {
@@ -146,7 +146,7 @@ class LaneLinker {
     }
   }
 
-  void link_connection(opendrive::Junction const& junction, opendrive::Connection const& connection) {
+  void link_connection(opendrive::JunctionElement const& junction, opendrive::Connection const& connection) {
     auto const entry = links_.entry_of(connection);
     if (!entry || !links_.find(connection.incoming_road)) return;  // the reader has said so
     std::string const ids = "junction " + junction.id + ", connection " + connection.id;

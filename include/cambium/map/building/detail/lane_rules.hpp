@@ -97,7 +97,7 @@ class LaneChangeMarks {
   }
 
  private:
-  using Borders = std::vector<opendrive::Lane const*>;
+  using Borders = std::vector<opendrive::LaneElement const*>;
 
   /// The lanes whose marks are those of the borders between the lanes `a` and `b`: of each border the lane nearer to
   /// lane 0. Ids may be any distance apart.
@@ -105,7 +105,7 @@ class LaneChangeMarks {
     int const low = std::min(a, b), high = std::max(a, b);
     Borders borders;
     auto at = std::partition_point(section_.lanes.begin(), section_.lanes.end(),
-                                   [high](opendrive::Lane const& lane) { return lane.id > high; });
+                                   [high](opendrive::LaneElement const& lane) { return lane.id > high; });
     for (; at != section_.lanes.end() && at->id >= low; ++at)
       if (at->id == 0 || at->id != (at->id > 0 ? high : low)) borders.push_back(&*at);
     return borders;
@@ -113,12 +113,12 @@ class LaneChangeMarks {
 
   /// Whether the marks at `s` [m] from the section's start let a vehicle change to the next higher (lower) lane.
   [[nodiscard]] static bool is_permitted(Borders const& borders, bool to_higher, double s) {
-    using opendrive::LaneChange;
+    using opendrive::LaneChangePermission;
     for (auto const* border : borders) {
       auto const& marks = border->road_marks;
       auto const next = std::upper_bound(marks.begin(), marks.end(), s + 1e-9,
                                          [](double v, auto const& mark) { return v < mark.s_offset; });
-      auto const change = next == marks.begin() ? LaneChange::unspecified : (next - 1)->lane_change;
+      auto const change = next == marks.begin() ? LaneChangePermission::unspecified : (next - 1)->lane_change;
       if (change == LaneChange::none || change == (to_higher ? LaneChange::decrease : LaneChange::increase))
         return false;
     }

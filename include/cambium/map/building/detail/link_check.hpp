@@ -79,7 +79,7 @@ class LinkCheck {
     int count = 0;
     std::string first;
     int line = 0;
-    auto const check = [&](SectionEnd const& at, opendrive::Lane const& lane, std::vector<int> const& numbers) {
+    auto const check = [&](SectionEnd const& at, opendrive::LaneElement const& lane, std::vector<int> const& numbers) {
       auto const others = links_.beyond(at);
       if (others.size() != 1 || numbers.empty()) return;
       auto const& other = others[0];

@@ -12,7 +12,7 @@
 namespace cambium::map::detail {
 
 /// What lies across the road's elevation.
-inline void set_surface(opendrive::Road const& source, Road& road) {
+inline void set_surface(opendrive::RoadElement const& source, Road& road) {
   road.superelevation = CubicProfile(source.superelevation);
   std::vector<CubicRecord> left, right;
   for (auto const& crossfall : source.crossfall) {
@@ -29,7 +29,7 @@ inline void set_surface(opendrive::Road const& source, Road& road) {
   }
 }
 
-[[nodiscard]] inline RoadLane make_road_lane(opendrive::Lane const& lane) {
+[[nodiscard]] inline RoadLane make_road_lane(opendrive::LaneElement const& lane) {
   std::vector<LaneHeight> heights;
   for (auto const& height : lane.heights) heights.push_back({height.s_offset, height.inner, height.outer});
   return {lane.id,
@@ -40,11 +40,11 @@ inline void set_surface(opendrive::Road const& source, Road& road) {
           std::move(heights)};
 }
 
-[[nodiscard]] inline Road make_road(opendrive::Road const& source, RoadId id, opendrive::HeaderOffset const& offset) {
+[[nodiscard]] inline Road make_road(opendrive::RoadElement const& source, RoadId id, opendrive::HeaderOffset const& offset) {
   Road road;
   road.id = id;
   road.name = source.id;
-  road.left_hand_traffic = source.rule == opendrive::TrafficRule::left_hand;
+  road.left_hand_traffic = source.rule == opendrive::DrivingSide::left_hand;
   road.reference_line = opendrive::make_reference_line(source, offset);
   road.lane_offset = CubicProfile(source.lane_offset);
   road.elevation = CubicProfile(source.elevation);

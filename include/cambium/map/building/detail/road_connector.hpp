@@ -49,15 +49,15 @@ using opendrive::ContactPoint;
 
 [[nodiscard]] inline auto& find_lane(auto& road, ContactPoint end, int id) {
   auto& lanes = section_at(road, end).lanes;
-  auto const found = std::find_if(lanes.begin(), lanes.end(), [id](opendrive::Lane const& l) { return l.id == id; });
+  auto const found = std::find_if(lanes.begin(), lanes.end(), [id](opendrive::LaneElement const& l) { return l.id == id; });
   if (id == 0 || found == lanes.end())
     throw MapError(describe({road.id, end}, id), "there is no such lane", "name one that it has");
   return *found;
 }
 
 /// True when traffic in the lane leaves the road at that end.
-[[nodiscard]] inline bool leaves(opendrive::Road const& road, ContactPoint end, opendrive::Lane const& lane) {
-  bool const along = ((lane.id < 0) != (road.rule == opendrive::TrafficRule::left_hand)) !=
+[[nodiscard]] inline bool leaves(opendrive::RoadElement const& road, ContactPoint end, opendrive::LaneElement const& lane) {
+  bool const along = ((lane.id < 0) != (road.rule == opendrive::DrivingSide::left_hand)) !=
                      (lane.direction == opendrive::LaneDirection::reversed);
   return along == (end == ContactPoint::end);
 }
@@ -68,7 +68,7 @@ struct LaneSpan {
   [[nodiscard]] double width() const { return std::abs(outer - inner); }
 };
 
-[[nodiscard]] inline LaneSpan lane_span(opendrive::Road const& road, ContactPoint end, int id) {
+[[nodiscard]] inline LaneSpan lane_span(opendrive::RoadElement const& road, ContactPoint end, int id) {
   (void)find_lane(road, end, id);
   double const s = end == ContactPoint::end ? road.geometry_length() : 0.0;
   auto const& section = section_at(road, end);
@@ -83,7 +83,7 @@ struct LaneSpan {
 }
 
 /// The pose `t` beside a road's end, looking away from the road.
-[[nodiscard]] inline geometry::Pose pose_at(opendrive::Road const& road, ContactPoint end, double t) {
+[[nodiscard]] inline geometry::Pose pose_at(opendrive::RoadElement const& road, ContactPoint end, double t) {
   auto const& g = end == ContactPoint::end ? road.geometries.back() : road.geometries.front();
   auto const p = evaluate(g, end == ContactPoint::end ? g.length : 0.0);
   return {p.x - t * std::sin(p.heading), p.y + t * std::cos(p.heading),
@@ -91,8 +91,8 @@ struct LaneSpan {
 }
 
 /// The lanes that go on as each other where two road ends meet.
-[[nodiscard]] inline std::vector<opendrive::LaneLink> facing_lanes(opendrive::Road const& a, ContactPoint end_a,
-                                                                   opendrive::Road const& b, ContactPoint end_b) {
+[[nodiscard]] inline std::vector<opendrive::LaneLink> facing_lanes(opendrive::RoadElement const& a, ContactPoint end_a,
+                                                                   opendrive::RoadElement const& b, ContactPoint end_b) {
   std::vector<opendrive::LaneLink> links;
   for (auto const& lane : section_at(a, end_a).lanes) {
     int const there = end_a != end_b ? lane.id : -lane.id;
@@ -104,7 +104,7 @@ struct LaneSpan {
 }
 
 /// The lanes of a turn, see `TurnPlan::lanes`.
-[[nodiscard]] inline std::vector<opendrive::LaneLink> turn_lanes(opendrive::Road const& a, opendrive::Road const& b,
+[[nodiscard]] inline std::vector<opendrive::LaneLink> turn_lanes(opendrive::RoadElement const& a, opendrive::RoadElement const& b,
                                                                  RoadEnd const& from, RoadEnd const& to,
                                                                  std::vector<opendrive::LaneLink> wanted) {
   for (auto const& link : wanted)
@@ -112,7 +112,7 @@ struct LaneSpan {
       throw MapError(describe(from, link.from) + " to " + describe(to, link.to), "one of them leads the wrong way",
                      "name a lane that leaves the one road and one that begins at the other");
   if (!wanted.empty()) return wanted;
-  auto const lanes = [](opendrive::Road const& road, ContactPoint end, bool leaving) {
+  auto const lanes = [](opendrive::RoadElement const& road, ContactPoint end, bool leaving) {
     std::vector<int> ids;
     for (auto const& lane : section_at(road, end).lanes)
       if (lane.id != 0 && is_drivable(lane.type) && leaves(road, end, lane) == leaving) ids.push_back(lane.id);
@@ -143,7 +143,7 @@ class RoadConnector {
  private:
   using Links = std::vector<opendrive::LaneLink>;
 
-  [[nodiscard]] opendrive::Road& road(RoadEnd const& end) const { return index_.road(document_, end.road); }
+  [[nodiscard]] opendrive::RoadElement& road(RoadEnd const& end) const { return index_.road(document_, end.road); }
   [[nodiscard]] std::optional<opendrive::RoadLink>& link_of(RoadEnd const& end) const {
     return end.end == ContactPoint::end ? road(end).successor : road(end).predecessor;
   }
@@ -151,7 +151,7 @@ class RoadConnector {
     auto& l = find_lane(road(end), end.end, lane);
     return end.end == ContactPoint::end ? l.successors : l.predecessors;
   }
-  [[nodiscard]] opendrive::Junction& junction(std::string const& id) const { return index_.junction(document_, id); }
+  [[nodiscard]] opendrive::JunctionElement& junction(std::string const& id) const { return index_.junction(document_, id); }
   [[nodiscard]] static opendrive::RoadLink to_road(RoadEnd const& end) {
     opendrive::RoadLink link;
     link.id = end.road;
@@ -204,7 +204,7 @@ class RoadConnector {
   }
 
   /// A connection for those of the lanes that lead from `incoming` onto `way`, where one of them is drivable.
-  void add_connection(opendrive::Junction& at, RoadEnd const& incoming, RoadEnd const& way, Links const& links) const {
+  void add_connection(opendrive::JunctionElement& at, RoadEnd const& incoming, RoadEnd const& way, Links const& links) const {
     opendrive::Connection connection;
     bool const is_direct = at.type == opendrive::JunctionType::direct;
     connection.incoming_road = incoming.road;
@@ -232,13 +232,13 @@ class RoadConnector {
                        [&link](auto const& l) { return l.from == link.from && l.to == link.to; });
   }
 
-  void add_connections(opendrive::Junction& at, RoadEnd const& a, RoadEnd const& b, Links const& links) const {
+  void add_connections(opendrive::JunctionElement& at, RoadEnd const& a, RoadEnd const& b, Links const& links) const {
     add_connection(at, a, b, links);
     add_connection(at, b, a, reversed(links));
   }
 
   /// The direct junction at both ends; the links that they had become its connections.
-  [[nodiscard]] opendrive::Junction& direct_junction(RoadEnd const& a, RoadEnd const& b) const {
+  [[nodiscard]] opendrive::JunctionElement& direct_junction(RoadEnd const& a, RoadEnd const& b) const {
     std::optional<std::string> id;
     for (auto const& end : {a, b}) {
       auto const& link = link_of(end);
@@ -264,7 +264,7 @@ class RoadConnector {
   }
 
   /// Turns a plain link into connections; either side may have been the only one to name a pair of lanes.
-  void dissolve(RoadEnd const& a, RoadEnd const& b, opendrive::Junction& into) const {
+  void dissolve(RoadEnd const& a, RoadEnd const& b, opendrive::JunctionElement& into) const {
     if (!is_free_for(b, a))
       throw MapError("road " + a.road + " and road " + b.road, "only one of them is linked to the other",
                      "repair that link in the document first");

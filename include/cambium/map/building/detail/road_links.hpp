@@ -58,7 +58,7 @@ class RoadLinks {
   }
 
   /// What the file says of a lane of the section; null where it is not there. O(lanes).
-  [[nodiscard]] opendrive::Lane const* written(SectionEnd const& at, int number) const {
+  [[nodiscard]] opendrive::LaneElement const* written(SectionEnd const& at, int number) const {
     return document_.roads[at.road].lane_sections[at.section].find(number);
   }
 
@@ -96,7 +96,7 @@ class RoadLinks {
   /// The end of a connection's incoming road that touches the junction; where both do, the one that the entered road
   /// names at its `entry`, else the one nearer to that. In a virtual junction the place in the middle of the road that
   /// the entered road names. None where the incoming road is not there, or meets the junction nowhere.
-  [[nodiscard]] SectionEnds exits_of(opendrive::Junction const& junction, opendrive::Connection const& connection,
+  [[nodiscard]] SectionEnds exits_of(opendrive::JunctionElement const& junction, opendrive::Connection const& connection,
                                      SectionEnd const& entry) const {
     auto const incoming = find(connection.incoming_road);
     if (!incoming) return {};

@@ -25,7 +25,7 @@ class RoadMaker {
  public:
   explicit RoadMaker(RoadPlan plan) : plan_(std::move(plan)), where_("road " + plan_.id) {}
 
-  [[nodiscard]] opendrive::Road make() {
+  [[nodiscard]] opendrive::RoadElement make() {
     check_line();
     if (plan_.sections.empty() || plan_.sections.front().s != 0.0)
       fail("it has no lane section at s 0", "give sections, the first one at 0");
@@ -112,19 +112,19 @@ class RoadMaker {
       result.lanes.push_back(lane(section.left, i, 1, end - section.s));
     result.lanes.push_back({});
     result.lanes.back().road_marks.push_back(
-        section.middle_mark.value_or(make_mark("solid", opendrive::LaneChange::none)));
+        section.middle_mark.value_or(make_mark("solid", opendrive::LaneChangePermission::none)));
     for (std::size_t i = 0; i < section.right.size(); ++i)
       result.lanes.push_back(lane(section.right, i, -1, end - section.s));
     road_.lane_sections.push_back(std::move(result));
   }
 
-  [[nodiscard]] opendrive::Lane lane(std::vector<LanePlan> const& side, std::size_t i, int sign, double length) const {
+  [[nodiscard]] opendrive::LaneElement lane(std::vector<LanePlan> const& side, std::size_t i, int sign, double length) const {
     auto const& plan = side[i];
     check_limit(plan.speed_limit);
     double const end_width = plan.end_width.value_or(plan.width);
     if (!(plan.width >= 0.0 && plan.width <= 1000.0 && end_width >= 0.0 && end_width <= 1000.0))
       fail("a lane's width is negative, beyond 1 km or not a number", "give widths in m");
-    opendrive::Lane result;
+    opendrive::LaneElement result;
     result.id = sign * (static_cast<int>(i) + 1);
     result.type = plan.type;
     check(plan.widths, "lane " + std::to_string(result.id) + ", width");
@@ -142,8 +142,8 @@ class RoadMaker {
       result.speeds.back().limit = plan.speed_limit;
     }
     bool const inner = i + 1 < side.size() && is_drivable(plan.type) && is_drivable(side[i + 1].type);
-    result.road_marks.push_back(plan.mark.value_or(inner ? make_mark("broken", opendrive::LaneChange::both)
-                                                         : make_mark("solid", opendrive::LaneChange::none)));
+    result.road_marks.push_back(plan.mark.value_or(inner ? make_mark("broken", opendrive::LaneChangePermission::both)
+                                                         : make_mark("solid", opendrive::LaneChangePermission::none)));
     return result;
   }
 
@@ -155,7 +155,7 @@ class RoadMaker {
       auto const& side = lane.id > 0 ? section.left : section.right;
       auto const& wanted = side[static_cast<std::size_t>(std::abs(lane.id)) - 1].next;
       if (wanted == 0) continue;
-      auto const target = std::find_if(next.lanes.begin(), next.lanes.end(), [&](opendrive::Lane const& other) {
+      auto const target = std::find_if(next.lanes.begin(), next.lanes.end(), [&](opendrive::LaneElement const& other) {
         return other.id == wanted.value_or(lane.id) && (wanted || is_drivable(other.type) == is_drivable(lane.type));
       });
       if (target == next.lanes.end() && wanted)
@@ -170,7 +170,7 @@ class RoadMaker {
 
   RoadPlan plan_;
   std::string where_;
-  opendrive::Road road_;
+  opendrive::RoadElement road_;
 };
 
 }  // namespace cambium::map::detail

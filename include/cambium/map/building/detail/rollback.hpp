@@ -59,7 +59,7 @@ class Rollback {
   opendrive::Document& document_;
   DocumentIndex const& index_;
   std::size_t roads_, junctions_;
-  std::vector<std::pair<std::size_t, opendrive::Road>> saved_roads_;
+  std::vector<std::pair<std::size_t, opendrive::RoadElement>> saved_roads_;
   std::vector<std::pair<std::size_t, std::size_t>> saved_junctions_;  ///< places, numbers of connections
   bool is_kept_ = false;
 };

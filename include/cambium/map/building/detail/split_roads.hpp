@@ -15,7 +15,7 @@ namespace cambium::map::detail {
 
 /// Lets a lane section begin at `s` [m] of the road, with the lanes and their links as they were. Nothing to do where
 /// one begins there already, or nearer than `shortest_section`.
-inline void split_section(opendrive::Road& road, double s) {
+inline void split_section(opendrive::RoadElement& road, double s) {
   auto& sections = road.lane_sections;
   auto const next = std::find_if(sections.begin(), sections.end(), [s](auto const& section) { return section.s > s; });
   constexpr std::size_t most = 1000;  // sections of a road that is split

@@ -33,13 +33,13 @@ using Words = std::array<std::pair<std::string_view, Enum>, N>;
   using enum opendrive::ElementType;
   return Words<opendrive::ElementType, 2>{{{"road", road}, {"junction", junction}}};
 }
-[[nodiscard]] constexpr auto words(opendrive::TrafficRule) {
-  using enum opendrive::TrafficRule;
-  return Words<opendrive::TrafficRule, 2>{{{"RHT", right_hand}, {"LHT", left_hand}}};
+[[nodiscard]] constexpr auto words(opendrive::DrivingSide) {
+  using enum opendrive::DrivingSide;
+  return Words<opendrive::DrivingSide, 2>{{{"RHT", right_hand}, {"LHT", left_hand}}};
 }
-[[nodiscard]] constexpr auto words(opendrive::LaneChange) {
-  using enum opendrive::LaneChange;
-  return Words<opendrive::LaneChange, 5>{
+[[nodiscard]] constexpr auto words(opendrive::LaneChangePermission) {
+  using enum opendrive::LaneChangePermission;
+  return Words<opendrive::LaneChangePermission, 5>{
       {{"both", both}, {"increase", increase}, {"decrease", decrease}, {"none", none}, {"", unspecified}}};
 }
 [[nodiscard]] constexpr auto words(opendrive::LaneDirection) {
@@ -94,7 +94,7 @@ void fields(auto& visit, Of<opendrive::HeaderOffset> auto& x) {
   visit.always("hdg", x.heading);
 }
 
-void fields(auto& visit, Of<opendrive::Road> auto& x) {
+void fields(auto& visit, Of<opendrive::RoadElement> auto& x) {
   visit.optional("name", x.name);
   visit.always("length", x.length);
   visit.needed("id", x.id);
@@ -127,7 +127,7 @@ void fields(auto& visit, Of<opendrive::LaneSection> auto& x) {
   visit.optional("singleSide", x.single_side);
 }
 
-void fields(auto& visit, Of<opendrive::Lane> auto& x) {
+void fields(auto& visit, Of<opendrive::LaneElement> auto& x) {
   visit.needed("id", x.id);
   visit.always("type", x.type);
   visit.optional("direction", x.direction);
@@ -142,13 +142,13 @@ void fields(auto& visit, Of<opendrive::RoadMark> auto& x) {
   visit.optional("laneChange", x.lane_change);
 }
 
-void fields(auto& visit, Of<opendrive::LaneHeight> auto& x) {
+void fields(auto& visit, Of<opendrive::HeightRecord> auto& x) {
   visit.place("sOffset", x.s_offset);
   visit.always("inner", x.inner);
   visit.always("outer", x.outer);
 }
 
-void fields(auto& visit, Of<opendrive::Junction> auto& x) {
+void fields(auto& visit, Of<opendrive::JunctionElement> auto& x) {
   visit.optional("name", x.name);
   visit.needed("id", x.id);
   visit.optional("type", x.type);

@@ -20,7 +20,7 @@ using cambium::detail::rounded_text;
 /// Checks that the geometries of a road join.
 class GeometryCheck {
  public:
-  GeometryCheck(opendrive::Road const& road, Findings& findings) : road_(road), findings_(findings) {}
+  GeometryCheck(opendrive::RoadElement const& road, Findings& findings) : road_(road), findings_(findings) {}
 
   /// Reports geometries that do not begin where the previous one ends. False where the road is unusable: a geometry is
   /// far off, or there is no telling what the curve does in the gap.
@@ -109,7 +109,7 @@ class GeometryCheck {
     findings_.add(Severity::warning, line, "geometry", "road " + road_.id, std::move(sentence));
   }
 
-  opendrive::Road const& road_;
+  opendrive::RoadElement const& road_;
   Findings& findings_;
 };
 

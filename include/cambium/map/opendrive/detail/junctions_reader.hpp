@@ -23,7 +23,7 @@ inline void report_missing_contact_point(XmlContext& context, pugi::xml_node nod
   return link;
 }
 
-inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
+inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opendrive::RoadElement& road) {
   pugi::xml_node const node = find_only_child(context, road_node, "link");
   if (auto const child = find_only_child(context, node, "predecessor"))
     road.predecessor = read_road_link(context, child);
@@ -49,8 +49,8 @@ inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opend
   return connection;
 }
 
-[[nodiscard]] inline std::optional<opendrive::Junction> read_junction(XmlContext& context, pugi::xml_node node) {
-  opendrive::Junction junction;
+[[nodiscard]] inline std::optional<opendrive::JunctionElement> read_junction(XmlContext& context, pugi::xml_node node) {
+  opendrive::JunctionElement junction;
   if (!read_attributes(context, node, junction)) {
     context.report(Severity::warning, node, "the junction was left out because it has no id");
     return std::nullopt;

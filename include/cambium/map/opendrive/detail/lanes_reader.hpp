@@ -98,7 +98,7 @@ inline void append_lane_speed(XmlContext& context, pugi::xml_node node, std::vec
   records.push_back(std::move(record));
 }
 
-inline void read_lane_links(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
+inline void read_lane_links(XmlContext& context, pugi::xml_node node, opendrive::LaneElement& lane) {
   pugi::xml_node const container = find_only_child(context, node, "link");
   read_container(context, container, lane.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "predecessor" && name != "successor") return false;
@@ -109,7 +109,7 @@ inline void read_lane_links(XmlContext& context, pugi::xml_node node, opendrive:
   });
 }
 
-inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
+inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendrive::LaneElement& lane) {
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (name == "width") return append_cubic(context, child, "sOffset", lane.widths);
     if (name == "border") return append_cubic(context, child, "sOffset", lane.borders);
@@ -122,10 +122,10 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
   sort_records(context, node, lane.borders, &CubicRecord::s, "border records");
   sort_records(context, node, lane.road_marks, &opendrive::RoadMark::s_offset, "road marks");
   sort_records(context, node, lane.speeds, &opendrive::SpeedRecord::s, "speed records");
-  sort_records(context, node, lane.heights, &opendrive::LaneHeight::s_offset, "height records");
+  sort_records(context, node, lane.heights, &opendrive::HeightRecord::s_offset, "height records");
 }
 
-inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive::Lane const& lane) {
+inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive::LaneElement const& lane) {
   if (lane.id == 0) return;
   if (lane.widths.empty() && lane.borders.empty())
     context.report(Severity::warning, node, "the lane has neither width nor border; its width counts as 0");
@@ -137,7 +137,7 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
 }
 
 /// False when the lane's id is unusable.
-[[nodiscard]] inline bool read_lane(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
+[[nodiscard]] inline bool read_lane(XmlContext& context, pugi::xml_node node, opendrive::LaneElement& lane) {
   if (!read_attributes(context, node, lane)) {
     context.report(Severity::warning, node, "the lane was left out because it has no usable id");
     return false;
@@ -159,10 +159,10 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
 /// Puts the lanes in order from left to right, adds a missing lane 0, and reports double ids (the first counts) and
 /// gaps.
 inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::LaneSection& section) {
-  std::vector<opendrive::Lane>& lanes = section.lanes;
-  auto const from_left = [](opendrive::Lane const& lane) { return -static_cast<long long>(lane.id); };
+  std::vector<opendrive::LaneElement>& lanes = section.lanes;
+  auto const from_left = [](opendrive::LaneElement const& lane) { return -static_cast<long long>(lane.id); };
   cambium::detail::stable_sort(lanes, from_left);
-  auto const is_double = [&](opendrive::Lane const& before, opendrive::Lane const& lane) {
+  auto const is_double = [&](opendrive::LaneElement const& before, opendrive::LaneElement const& lane) {
     if (before.id != lane.id) return false;
     context.report(Severity::warning, lane.line, "lane",
                    "lane id " + std::to_string(lane.id) + " occurs twice; the second one was left out");
@@ -171,7 +171,7 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
   lanes.erase(std::unique(lanes.begin(), lanes.end(), is_double), lanes.end());
   if (!section.find(0)) {
     context.report(Severity::warning, node, "the section has no lane 0; an empty one was added");
-    opendrive::Lane centre;
+    opendrive::LaneElement centre;
     centre.line = section.line;
     lanes.push_back(std::move(centre));
     cambium::detail::stable_sort(lanes, from_left);
@@ -188,7 +188,7 @@ inline void read_side(XmlContext& context, pugi::xml_node node, std::string_view
   int const sign = side == "left" ? 1 : side == "right" ? -1 : 0;
   read_container(context, node, section.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "lane") return false;
-    opendrive::Lane& lane = section.lanes.emplace_back();
+    opendrive::LaneElement& lane = section.lanes.emplace_back();
     if (!read_lane(context, child, lane))
       section.lanes.pop_back();
     else if ((lane.id > 0) - (lane.id < 0) != sign)
@@ -228,18 +228,18 @@ inline void complete_single_sides(std::vector<opendrive::LaneSection>& sections)
     section.single_side = false;
     double const shift = section.s - sections[k - 1].s;
     for (int const side : {1, -1}) {
-      auto const is_there = [side](opendrive::Lane const& lane) { return lane.id * side > 0; };
+      auto const is_there = [side](opendrive::LaneElement const& lane) { return lane.id * side > 0; };
       if (std::any_of(section.lanes.begin(), section.lanes.end(), is_there)) continue;
-      for (opendrive::Lane& before : sections[k - 1].lanes) {
+      for (opendrive::LaneElement& before : sections[k - 1].lanes) {
         if (!is_there(before)) continue;
-        opendrive::Lane lane = before;
+        opendrive::LaneElement lane = before;
         move_records(lane, shift);
         before.successors = lane.predecessors = {lane.id};
         section.lanes.push_back(std::move(lane));
       }
     }
     cambium::detail::stable_sort(section.lanes,
-                                 [](opendrive::Lane const& lane) { return -static_cast<long long>(lane.id); });
+                                 [](opendrive::LaneElement const& lane) { return -static_cast<long long>(lane.id); });
   }
 }
 

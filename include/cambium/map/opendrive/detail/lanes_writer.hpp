@@ -45,7 +45,7 @@ inline void write_limit(XmlText& xml, std::optional<double> const& limit, opendr
   xml.attribute("unit", "m/s");
 }
 
-inline void write_lane_links(XmlText& xml, opendrive::Lane const& lane) {
+inline void write_lane_links(XmlText& xml, opendrive::LaneElement const& lane) {
   bool const needed = !lane.predecessors.empty() || !lane.successors.empty();
   write_container(xml, "link", lane.rest, needed, [&] {
     for (int const id : lane.predecessors) xml.element("predecessor", [&] { xml.attribute("id", std::to_string(id)); });
@@ -53,7 +53,7 @@ inline void write_lane_links(XmlText& xml, opendrive::Lane const& lane) {
   });
 }
 
-inline void write_lane(XmlText& xml, opendrive::Lane const& lane) {
+inline void write_lane(XmlText& xml, opendrive::LaneElement const& lane) {
   xml.element("lane", [&] {
     write_attributes(xml, lane);
     write_lane_links(xml, lane);
@@ -72,10 +72,10 @@ inline void write_lane(XmlText& xml, opendrive::Lane const& lane) {
 
 inline void write_lane_section(XmlText& xml, opendrive::LaneSection const& section) {
   auto const write_side = [&](std::string_view side, int sign) {
-    auto const is_there = [sign](opendrive::Lane const& lane) { return (lane.id > 0) - (lane.id < 0) == sign; };
+    auto const is_there = [sign](opendrive::LaneElement const& lane) { return (lane.id > 0) - (lane.id < 0) == sign; };
     bool const needed = std::any_of(section.lanes.begin(), section.lanes.end(), is_there);
     write_container(xml, side, section.rest, needed, [&] {
-      for (opendrive::Lane const& lane : section.lanes)
+      for (opendrive::LaneElement const& lane : section.lanes)
         if (is_there(lane)) write_lane(xml, lane);
     });
   };

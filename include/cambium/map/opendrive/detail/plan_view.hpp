@@ -104,7 +104,7 @@ inline void report_curve(XmlContext& context, pugi::xml_node node, std::string_v
 /// A geometry with what goes along with it.
 struct ReadGeometry {
   Geometry geometry;
-  opendrive::Line line;
+  opendrive::FileLine line;
   opendrive::Rest rest;
 };
 
@@ -127,7 +127,7 @@ struct ReadGeometry {
 }
 
 /// False when there is no usable plan view.
-[[nodiscard]] inline bool read_plan_view(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
+[[nodiscard]] inline bool read_plan_view(XmlContext& context, pugi::xml_node road_node, opendrive::RoadElement& road) {
   pugi::xml_node const node = find_only_child(context, road_node, "planView");
   std::vector<ReadGeometry> all;
   bool good = true;

@@ -18,7 +18,7 @@ namespace cambium::map::detail {
 /// Looks at a road's records along s: leaves out, and reports, those that are beyond any road.
 class RecordCheck {
  public:
-  RecordCheck(opendrive::Road& road, Findings& findings) : road_(road), findings_(findings), ids_("road " + road.id) {}
+  RecordCheck(opendrive::RoadElement& road, Findings& findings) : road_(road), findings_(findings), ids_("road " + road.id) {}
 
   /// Negative widths are reported, too.
   void run() {
@@ -31,9 +31,9 @@ class RecordCheck {
     for (std::size_t i = 0; i < road_.lane_sections.size(); ++i) {
       opendrive::LaneSection& section = road_.lane_sections[i];
       double const end = i + 1 < road_.lane_sections.size() ? road_.lane_sections[i + 1].s : road_.geometry_length();
-      for (opendrive::Lane& lane : section.lanes) {
+      for (opendrive::LaneElement& lane : section.lanes) {
         auto const of = [&] { return ids_ + ", section " + std::to_string(i) + ", lane " + std::to_string(lane.id); };
-        leave_out(lane.heights, lane.line, "height", of(), [](opendrive::LaneHeight const& height, auto const&) {
+        leave_out(lane.heights, lane.line, "height", of(), [](opendrive::HeightRecord const& height, auto const&) {
           return std::abs(height.inner) <= highest && std::abs(height.outer) <= highest;
         });
         leave_out_wild(lane.borders, end - section.s, lane.line, "border", of);
@@ -112,7 +112,7 @@ class RecordCheck {
     findings_.add(Severity::warning, line, element, std::move(ids), std::move(sentence));
   }
 
-  opendrive::Road& road_;
+  opendrive::RoadElement& road_;
   Findings& findings_;
   std::string ids_;
 };
