@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -30,15 +29,6 @@ std::vector<LineSample> random_samples(RandomStream& stream, int count) {
         {last.x + step * std::cos(chord), last.y + step * std::sin(chord), last.heading + curvature * step});
   }
   return samples;
-}
-
-Line circle(double radius, int samples, double sweep) {
-  std::vector<LineSample> result;
-  for (int i = 0; i <= samples; ++i) {
-    double const angle = sweep * i / samples;
-    result.push_back({radius * std::sin(angle), radius * (1.0 - std::cos(angle)), angle});
-  }
-  return Line::from_samples(result);
 }
 
 double distance_to_line(Line const& line, Point const& p) {
@@ -78,6 +68,8 @@ TEST_CASE("poses lie on the chords, and beyond the ends on their extension") {
   CHECK(line.pose(12.0).y == doctest::Approx(2.0));
   CHECK(line.pose(12.0).heading == doctest::Approx(pi / 2));
   CHECK(line.pose(-3.0) == Pose{-3, 0, 0});
+  CHECK(line.begin_pose() == Pose{0, 0, 0});
+  CHECK(line.end_pose() == line.pose(15.0));
   CHECK(line.pose(20.0).y == doctest::Approx(10.0));
 }
 
@@ -103,6 +95,15 @@ TEST_CASE("a pose found with a cursor is the one found by search, wherever the c
     REQUIRE(line.pose(s, cursor) == line.pose(s));
     REQUIRE(cursor == line.find(s));
   }
+}
+
+TEST_CASE("a sample goes on from the last one where it is ahead, or a metre away") {
+  Pose const last{5.0, 5.0, pi / 2};
+  CHECK(goes_on(last, {5.0, 5.001, 0.0}));
+  CHECK_FALSE(goes_on(last, {5.0, 5.0 + 1e-7, 0.0}));
+  CHECK_FALSE(goes_on(last, {5.0, 4.5, 0.0}));
+  CHECK_FALSE(goes_on(last, {5.9, 4.9, 0.0}));
+  CHECK(goes_on(last, {5.0, 4.0, 0.0}));
 }
 
 TEST_CASE("the exact projection finds the nearest point of the line") {
@@ -155,34 +156,6 @@ TEST_CASE("near the line the warm projection equals the exact one, from any hint
       REQUIRE(warm.s == doctest::Approx(exact.s).epsilon(1e-12));
       REQUIRE(warm.lateral == doctest::Approx(exact.lateral).epsilon(1e-12));
     }
-  }
-}
-
-TEST_CASE("a vehicle followed with warm projections has the exact ones") {
-  Line const line = circle(60.0, 400, 6.0);
-  std::uint32_t hint = 0;
-  for (double s = 0.0; s < line.length(); s += 2.0) {
-    double const lateral = 3.0 * std::sin(0.1 * s);
-    Point const p = to_map(line.pose(s), {0.0, lateral});
-    auto const warm = line.project(p, hint), exact = line.project(p);
-    hint = warm.segment;
-    REQUIRE(warm.s == doctest::Approx(exact.s).epsilon(1e-12));
-    REQUIRE(warm.lateral == doctest::Approx(exact.lateral).epsilon(1e-12));
-    // The kinks are 0.015 rad: their normals differ from those of the interpolated heading by half of it.
-    REQUIRE(std::abs(warm.s - s) < 3.0 * 0.015);
-    REQUIRE(std::abs(warm.lateral - lateral) < 1e-3);
-  }
-}
-
-TEST_CASE("a sampled circle has its curvature, its tangents and nearly its length") {
-  Line const line = circle(50.0, 200, pi);
-  double const chord_error = std::pow(pi / 200, 2) / 24.0;
-  CHECK(line.length() == doctest::Approx(50.0 * pi).epsilon(2.0 * chord_error));
-  for (double s = 0.5; s < line.length(); s += 5.0) {
-    CHECK(line.curvature(s) == doctest::Approx(0.02).epsilon(2.0 * chord_error));
-    CHECK(std::abs(line.pose(s).heading - s / 50.0) < 1e-4);
-    Point const center_to_line = line.pose(s).position() - Point{0.0, 50.0};
-    CHECK(center_to_line.norm() == doctest::Approx(50.0).epsilon(1e-4));
   }
 }
 

@@ -1,6 +1,5 @@
 #include "cambium/geometry/polygon.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -63,6 +62,7 @@ TEST_CASE("inside, border and corners are contained, the notch is not") {
 
 TEST_CASE("convexity is seen") {
   CHECK(!Polygon(ell).is_convex());
+  CHECK(!Polygon().is_convex());
   CHECK(Polygon(Points{{0, 0}, {1, 0}, {2, 0}, {2, 1}}).is_convex());
   CHECK(polygon_of(box_of(car(), Pose{3, 4, 1.1})).is_convex());
 }

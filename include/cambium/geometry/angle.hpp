@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "cambium/core/macros.hpp"
 #include "cambium/geometry/pose.hpp"
 
 namespace cambium::geometry {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "cambium/geometry/pose.hpp"
 
@@ -35,5 +36,12 @@ struct Box {
 
   friend bool operator==(Box const&, Box const&) = default;
 };
+
+/// The smallest box around `points`.
+[[nodiscard]] inline Box box_around(std::span<Point const> points) {
+  Box box;
+  for (auto const& p : points) box.add(p.x(), p.y());
+  return box;
+}
 
 }  // namespace cambium::geometry

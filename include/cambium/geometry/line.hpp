@@ -142,6 +142,9 @@ class Line {
     return pose(s, cursor);
   }
 
+  [[nodiscard]] Pose begin_pose() const { return pose(0.0); }
+  [[nodiscard]] Pose end_pose() const { return pose(length_); }
+
   /// Curvature (left positive) of the interpolated heading at `s` [1/m]; 0 for a line from `from_points`. O(log n).
   [[nodiscard]] double curvature(double s) const { return segments_[find(s)].curvature; }
 

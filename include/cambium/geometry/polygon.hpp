@@ -12,6 +12,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/box.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/pose.hpp"
 
@@ -20,6 +21,14 @@ namespace cambium::geometry {
 /// Twice the signed area of the triangle a, b, c [m^2]: positive if c lies to the left of the line from a to b.
 [[nodiscard]] inline double turn(Point const& a, Point const& b, Point const& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+}
+
+/// Twice the signed area of the ring of `points` [m^2]: positive if it runs counter-clockwise. Computed relative to the
+/// first point, so that rings far from the origin lose no precision.
+[[nodiscard]] inline double twice_area(std::span<Point const> points) {
+  double twice = 0.0;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) twice += turn(points[0], points[i], points[i + 1]);
+  return twice;
 }
 
 /// Distance [m] from `p` to the segment from `a` to `b`.
@@ -51,14 +60,13 @@ class Polygon {
     if (points_.size() < 3) {
       throw Error(where, "has " + std::to_string(points_.size()) + " distinct points", "give at least three corners");
     }
-    area_ = signed_area();
+    area_ = 0.5 * twice_area(points_);
     if (area_ == 0.0) throw Error(where, "has no area", "give corners that do not lie on one line");
     if (area_ < 0.0) {
       std::reverse(points_.begin(), points_.end());
       area_ = -area_;
     }
-    set_bounding_box();
-    set_convex();
+    box_ = box_around(points_);
   }
 
   /// The same from a list: `Polygon({{0, 0}, {4, 0}, {4, 2}})`.
@@ -71,8 +79,12 @@ class Polygon {
   [[nodiscard]] Point const* data() const { return points_.data(); }
   [[nodiscard]] double area() const { return area_; }  ///< [m^2]
   [[nodiscard]] Box const& bounding_box() const { return box_; }
-  /// True if no corner turns right. O(1).
-  [[nodiscard]] bool is_convex() const { return convex_; }
+  /// True if no corner turns right. O(n).
+  [[nodiscard]] bool is_convex() const {
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (turn(edge(i).first, edge(i).second, points_[(i + 2) % points_.size()]) < 0.0) return false;
+    return !points_.empty();
+  }
 
   /// Edge i, from corner i to the next.
   [[nodiscard]] std::pair<Point const&, Point const&> edge(std::size_t i) const {
@@ -112,7 +124,7 @@ class Polygon {
     for (auto& p : result.points_) {
       p = Point{frame.x + cos * p.x() - sin * p.y(), frame.y + sin * p.x() + cos * p.y()};
     }
-    result.set_bounding_box();
+    result.box_ = box_around(result.points_);
     return result;
   }
 
@@ -127,33 +139,9 @@ class Polygon {
            p.y() <= std::max(a.y(), b.y());
   }
 
-  /// Computed relative to the first corner, so that rings far from the origin lose no precision.
-  [[nodiscard]] double signed_area() const {
-    double twice = 0.0;
-    for (std::size_t i = 1; i + 1 < points_.size(); ++i) twice += turn(points_[0], points_[i], points_[i + 1]);
-    return 0.5 * twice;
-  }
-
-  void set_bounding_box() {
-    box_ = {points_[0].x(), points_[0].y(), points_[0].x(), points_[0].y()};
-    for (auto const& p : points_) {
-      box_ = {std::min(box_.min_x, p.x()), std::min(box_.min_y, p.y()), std::max(box_.max_x, p.x()),
-              std::max(box_.max_y, p.y())};
-    }
-  }
-
-  void set_convex() {
-    convex_ = true;
-    for (std::size_t i = 0; i < points_.size() && convex_; ++i) {
-      auto const [a, b] = edge(i);
-      convex_ = turn(a, b, points_[(i + 2) % points_.size()]) >= 0.0;
-    }
-  }
-
   std::vector<Point> points_;
   double area_ = 0.0;
   Box box_{};
-  bool convex_ = false;
 };
 
 /// True if the closed segments a-b and c-d share a point.

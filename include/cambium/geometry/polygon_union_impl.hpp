@@ -1,16 +1,11 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/detail/boost_polygon.hpp"
-#include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/polygon_union.hpp"
-#include "cambium/geometry/pose.hpp"
 
 namespace cambium::geometry {
 

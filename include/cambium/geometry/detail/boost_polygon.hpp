@@ -1,9 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstddef>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "cambium/geometry/polygon.hpp"
@@ -47,9 +44,7 @@ template <class Ring>
 void add_ring(Ring const& ring, std::vector<Polygon>& polygons) {
   std::vector<Point> points;
   for (auto const& p : ring) points.emplace_back(p.x(), p.y());
-  double twice = 0.0;
-  for (std::size_t i = 1; i + 1 < points.size(); ++i) twice += turn(points[0], points[i], points[i + 1]);
-  if (std::abs(twice) > 2e-4) polygons.emplace_back(points, "area");
+  if (std::abs(twice_area(points)) > 2e-4) polygons.emplace_back(points, "area");
 }
 
 }  // namespace cambium::geometry::detail
