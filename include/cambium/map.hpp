@@ -97,7 +97,6 @@
 
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/corridor/corridor.hpp"
-#include "cambium/map/corridor/find_corridor.hpp"
 #include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/corridor/lane_area.hpp"
 #include "cambium/map/corridor/lane_place.hpp"

@@ -17,10 +17,10 @@ namespace cambium::map {
 [[nodiscard]] inline std::uint64_t content_hash(Map const& map) {
   if (auto const known = map.known_content_hash().load(std::memory_order_relaxed); known != 0) return known;
   cambium::detail::Fnv1a<std::uint64_t> hash;
-  auto const add = [&hash](std::uint64_t bits) { hash.add_bytes(bits); };
-  auto const add_number = [&](double number) {
+  auto const add = [&hash](auto... values) { (hash.add_bytes(static_cast<std::uint64_t>(values)), ...); };
+  auto const add_numbers = [&](auto... numbers) {
     constexpr double off = 0.3719;  // else round numbers would lie where the last bit decides
-    add(std::bit_cast<std::uint64_t>(std::floor(1e3 * number + off) + 0.0));
+    (add(std::bit_cast<std::uint64_t>(std::floor(1e3 * numbers + off) + 0.0)), ...);
   };
   auto const add_text = [&](std::string_view text) {
     for (char const c : text) add(static_cast<unsigned char>(c));
@@ -32,48 +32,26 @@ namespace cambium::map {
   };
   for (auto const& road : map.roads()) add_text(road.name);
   for (auto const& lane : map.lanes()) {
-    add(index_of(lane.road));
-    add(lane.section);
-    add(static_cast<std::uint64_t>(lane.number));
-    add(static_cast<std::uint64_t>(lane.type));
-    add(lane.along_road);
-    for (auto const& segment : lane.path.segments()) {
-      add_number(segment.x);
-      add_number(segment.y);
-      add_number(segment.length);
-    }
-    for (auto const& width : lane.widths) {
-      add_number(width.left);
-      add_number(width.right);
-    }
-    for (auto const& limit : lane.speed_limits) {
-      add_number(limit.begin);
-      add_number(limit.limit);
-    }
+    add(index_of(lane.road), lane.section, lane.number, lane.type, lane.along_road);
+    for (auto const& segment : lane.path.segments()) add_numbers(segment.x, segment.y, segment.length);
+    for (auto const& width : lane.widths) add_numbers(width.left, width.right);
+    for (auto const& limit : lane.speed_limits) add_numbers(limit.begin, limit.limit);
     for (auto const* changes : {&lane.left_changes, &lane.right_changes})
-      for (auto const& stretch : *changes) {
-        add_number(stretch.begin);
-        add_number(stretch.end);
-      }
+      for (auto const& stretch : *changes) add_numbers(stretch.begin, stretch.end);
     for (auto const id : {lane.left_neighbor, lane.right_neighbor, lane.opposite, lane.merges_into}) add(index_of(id));
     add_lanes(lane.successors);
     add_lanes(lane.predecessors);
     for (auto const& overlap : lane.overlaps) {
       add(index_of(overlap.other));
-      add_number(overlap.begin);
-      add_number(overlap.end);
+      add_numbers(overlap.begin, overlap.end);
     }
     for (auto const& signal : lane.signals) {
-      add_number(signal.s);
-      add(static_cast<std::uint64_t>(signal.kind));
-      add(index_of(signal.light));
+      add_numbers(signal.s);
+      add(signal.kind, index_of(signal.light));
     }
   }
   for (auto const& junction : map.junctions())
-    for (auto const& priority : junction.priorities) {
-      add(index_of(priority.high));
-      add(index_of(priority.low));
-    }
+    for (auto const& priority : junction.priorities) add(index_of(priority.high), index_of(priority.low));
   for (auto const& light : map.lights()) add_text(light.name);
   map.known_content_hash().store(hash.value(), std::memory_order_relaxed);
   return hash.value();

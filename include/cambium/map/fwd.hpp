@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-/// Names of the map room, for headers that only pass references on.
+/// Forward declarations of the map room.
 namespace cambium::map {
 
 class Map;

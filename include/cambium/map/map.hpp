@@ -29,7 +29,7 @@
 
 namespace cambium::map {
 
-/// What the map is built with.
+/// How a map is built.
 struct MapOptions {
   double position_tolerance = 0.01;  ///< largest distance of a sampled lane from the exact one [m]
   /// Largest deviation of a sampled lane's heading, which is interpolated between its samples, from the exact one
@@ -38,9 +38,9 @@ struct MapOptions {
   double overlap_clearance = 2.5;  ///< paths closer than this cannot carry vehicles side by side [m]
   double merge_view = 120.0;   ///< how far before an overlap merging lanes take each other's traffic into account [m]
   double merge_length = 60.0;  ///< longest stretch over which an ending lane swings onto its neighbour [m]
-  bool infer_links = false;    ///< join lanes that one another's ends meet, where the file has forgotten the link
-  /// The bodies that conflicts at junctions are found for, with a hand's breadth of air: the first holds cars and vans,
-  /// the second trucks and buses, which swing out farther. `World::add` refuses larger ones that heed conflicts.
+  bool infer_links = false;    ///< join lanes whose ends meet although the file does not link them
+  /// The bodies for which conflicts at junctions are found, with some clearance: the first holds cars and vans, the
+  /// second trucks and buses, which swing out farther. `World::add` refuses larger ones that heed conflicts.
   geometry::Shape conflict_shape{4.8, 1.4, 1.1, 1.1}, large_conflict_shape{8.8, 3.6, 1.4, 1.4};
 
   static constexpr double turn_per_tolerance = 6.0;
@@ -58,7 +58,7 @@ struct MapOptions {
                   "how far before an overlap merging traffic is taken into account"),
         parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
                   "longest stretch over which an ending lane swings onto its neighbour"),
-        parameter("infer_links", &P::infer_links, "join lanes whose ends meet where the file has forgotten the link"),
+        parameter("infer_links", &P::infer_links, "join lanes whose ends meet although the file does not link them"),
         parameter("conflict_shape", &P::conflict_shape, "the body that conflicts at junctions are found for"),
         parameter("large_conflict_shape", &P::large_conflict_shape, "the same where larger vehicles drive"));
   }
@@ -143,7 +143,7 @@ class Map {
   [[nodiscard]] LaneId find_lane(std::string_view name, double s, int number) const {
     return detail::lane_at(find_road(name), s, number).id;
   }
-  /// As above: that which is driven in `direction`, as only one lane of each strip is, but for both-way ones.
+  /// As above, but returns the lane driven in `direction`.
   [[nodiscard]] LaneId find_lane(std::string_view name, double s, int number, RoadDirection direction) const {
     auto const& found = detail::lane_at(find_road(name), s, number);
     for (auto const id : {found.id, found.opposite})
@@ -164,7 +164,7 @@ class Map {
   [[nodiscard]] std::vector<LaneHit> lanes_near(geometry::Point const& p, double radius) const {
     return tree_.near(p, LaneQuery{radius});
   }
-  /// As above: those that `query` asks for.
+  /// As above, but those that match `query`.
   [[nodiscard]] std::vector<LaneHit> lanes_near(geometry::Point const& p, LaneQuery const& query) const {
     return tree_.near(p, query);
   }
@@ -237,8 +237,8 @@ class Map {
     return routes(LaneStation{from}, end_of(to), options);
   }
 
-  /// The lanes that can be reached from `from` at a cost of `budget` at most, its own first, the cheapest first; of
-  /// equal ones the smallest id. Throws as above, and for a budget that is negative or not a number. O((V + E) log V).
+  /// The lanes reachable from `from` at a cost of at most `budget`, its own first, then the cheapest; ties go to the
+  /// smaller id. Throws as above, and for a budget that is negative or not a number. O((V + E) log V).
   [[nodiscard]] std::vector<ReachedLane> reachable(LaneStation from, double budget,
                                                    RouteOptions const& options = {}) const {
     return queries_->reachable(parts_.lanes, from, budget, options);
@@ -247,10 +247,10 @@ class Map {
     return reachable(LaneStation{from}, budget, options);
   }
 
-  /// What `content_hash` has found, or 0: it is asked for often.
+  /// The cached `content_hash`; 0 until it is computed.
   [[nodiscard]] std::atomic<std::uint64_t>& known_content_hash() const { return content_hash_; }
 
-  /// What takes long to compile; see the functions that are named there.
+  /// The queries that take long to compile; call them by the functions named there.
   [[nodiscard]] MapQueries const& queries() const { return *queries_; }
 
  private:

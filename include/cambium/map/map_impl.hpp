@@ -2,16 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "cambium/core/macros.hpp"
-#include "cambium/core/ids.hpp"
-#include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/corridor/detail/built_corridors.hpp"
 #include "cambium/map/corridor/detail/corridor_signals.hpp"

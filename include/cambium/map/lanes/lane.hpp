@@ -18,9 +18,25 @@ struct SideWidths {
   double left{}, right{};
 };
 
+/// `widths` at the vertices of `line`, interpolated at arc length `s` within its `segment`.
+[[nodiscard]] inline SideWidths interpolated(std::span<SideWidths const> widths, geometry::Line const& line, double s,
+                                             std::uint32_t segment) {
+  auto const& g = line.segments()[segment];
+  double const u = std::clamp((s - g.s) / g.length, 0.0, 1.0);
+  auto const &a = widths[segment], &b = widths[segment + 1];
+  return {a.left + u * (b.left - a.left), a.right + u * (b.right - a.right)};
+}
+
 /// A stretch of a line, from arc length `begin` to `end` [m].
 struct PathStretch {
   double begin{}, end{};
+
+  [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
+  /// How far the two are apart; negative where they overlap.
+  [[nodiscard]] double gap(PathStretch const& o) const { return std::max(begin, o.begin) - std::min(end, o.end); }
+  [[nodiscard]] bool has(PathStretch const& o) const { return begin <= o.begin && o.end <= end; }
+  /// Grows to include the other.
+  void add(PathStretch const& o) { *this = {std::min(begin, o.begin), std::max(end, o.end)}; }
 
   friend bool operator==(PathStretch const&, PathStretch const&) = default;
 };
@@ -57,7 +73,7 @@ enum class OverlapKind : std::uint8_t {
   crossing,  ///< one passes over the other
 };
 
-/// Where the paths of two lanes meet: who lets whom go first.
+/// Who goes first where the paths of two lanes meet.
 enum class RightOfWay : std::uint8_t {
   equal,   ///< neither: whoever is there first
   first,   ///< this lane's traffic goes first
@@ -126,9 +142,7 @@ struct Lane {
   [[nodiscard]] SideWidths widths_at(double s) const { return widths_at(s, path.find(s)); }
   /// As above, within `segment` of the path. O(1).
   [[nodiscard]] SideWidths widths_at(double s, std::uint32_t segment) const {
-    double const u = fraction(s, segment);
-    auto const &a = widths[segment], &b = widths[segment + 1];
-    return {a.left + u * (b.left - a.left), a.right + u * (b.right - a.right)};
+    return interpolated(widths, path, s, segment);
   }
 
   /// Road station beside path position `s` [m], interpolated between the vertices (`project` onto the road's reference
@@ -136,7 +150,8 @@ struct Lane {
   [[nodiscard]] double station_at(double s) const { return station_at(s, path.find(s)); }
   /// As above, within `segment` of the path. O(1).
   [[nodiscard]] double station_at(double s, std::uint32_t segment) const {
-    return stations[segment] + fraction(s, segment) * (stations[segment + 1] - stations[segment]);
+    auto const& g = path.segments()[segment];
+    return stations[segment] + std::clamp((s - g.s) / g.length, 0.0, 1.0) * (stations[segment + 1] - stations[segment]);
   }
   /// Path position beside road station `station`, interpolated between the vertices; an end of the path for what lies
   /// beyond it. [m], O(log n).
@@ -157,10 +172,6 @@ struct Lane {
   }
 
  private:
-  [[nodiscard]] double fraction(double s, std::uint32_t i) const {
-    auto const& segment = path.segments()[i];
-    return std::clamp((s - segment.s) / segment.length, 0.0, 1.0);
-  }
   [[nodiscard]] static bool holds(std::vector<PathStretch> const& stretches, double s) {
     return std::any_of(stretches.begin(), stretches.end(),
                        [s](PathStretch const& stretch) { return s >= stretch.begin && s <= stretch.end; });

@@ -40,7 +40,7 @@ struct NetworkFinding {
   friend bool operator==(NetworkFinding const&, NetworkFinding const&) = default;
 };
 
-/// From where on a finding is one.
+/// Thresholds above which a deviation is reported.
 struct NetworkTolerances {
   double gap = 0.01;            ///< between path ends, and between border ends [m]
   double kink = 0.1;            ///< [rad]

@@ -1,15 +1,8 @@
 #pragma once
 
-#include <span>
-#include <vector>
-
 #include "cambium/core/macros.hpp"
-#include "cambium/geometry/box.hpp"
-#include "cambium/geometry/box_tree.hpp"
 #include "cambium/map/detail/network_check.hpp"
-#include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/lane_network.hpp"
-#include "cambium/map/map.hpp"
 
 namespace cambium::map {
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
-#include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -25,7 +24,7 @@ struct LaneQuery {
   static constexpr std::size_t all = std::numeric_limits<std::size_t>::max();
 
   double radius = 0.0;              ///< how far beyond a lane's border or end the point may be [m]; infinite: any
-  std::size_t count = all;          ///< only the nearest so many
+  std::size_t count = all;          ///< at most this many, the nearest
   std::optional<double> heading{};  ///< only lanes driven in about this direction [rad]
   double heading_tolerance = 0.5 * geometry::pi;  ///< how far from it [rad]
   bool only_drivable = false;
@@ -81,16 +80,16 @@ class LaneTree {
     double const c = std::cos(pose.heading), s = std::sin(pose.heading);
     if (!std::isfinite(c)) return std::nullopt;  // a heading that is none fits no lane
     Best holding, nearest;
-    drivable_.visit(pose.position(), 0.0, [&](LaneHit const& hit, Direction const& d) {
+    drivable_.visit(pose.position(), 0.0, [&](LaneHit const& hit, geometry::Point const& d) {
       if (hit.distance > 0.0) return false;
-      double const error = std::abs(std::atan2(d.x * s - d.y * c, d.x * c + d.y * s));
+      double const error = std::abs(std::atan2(d.x() * s - d.y() * c, d.x() * c + d.y() * s));
       holding.offer(std::floor(error / 0.05), hit);
       return false;
     });
     if (is_valid(holding.hit.lane)) return holding.hit;
     for (double const reach : {0.2 * radius, radius}) {  // mostly it is near, and then there is less to look at
-      drivable_.visit(pose.position(), reach, [&](LaneHit const& hit, Direction const& d) {
-        if (hit.distance <= reach && d.x * c + d.y * s > 0.0) nearest.offer(hit.distance, hit);
+      drivable_.visit(pose.position(), reach, [&](LaneHit const& hit, geometry::Point const& d) {
+        if (hit.distance <= reach && d.x() * c + d.y() * s > 0.0) nearest.offer(hit.distance, hit);
         return false;
       });
       if (is_valid(nearest.hit.lane)) return nearest.hit;
@@ -102,7 +101,7 @@ class LaneTree {
   /// point there, in no particular order. O(log n) and those found, no allocation.
   template <class F>
   void for_each_drivable(geometry::Point const& p, double radius, F&& f) const {
-    drivable_.visit(p, radius, [&](LaneHit const& hit, Direction const&) {
+    drivable_.visit(p, radius, [&](LaneHit const& hit, geometry::Point const&) {
       if (hit.distance <= radius) f(hit);
       return false;
     });
@@ -110,19 +109,17 @@ class LaneTree {
 
   /// True when `p` is in a drivable lane, or not farther than `slack` from one. O(log n), no allocation.
   [[nodiscard]] bool any_drivable_at(geometry::Point const& p) const {
-    return drivable_.visit(p, slack, [](LaneHit const& hit, Direction const&) { return hit.distance <= slack; });
+    return drivable_.visit(p, slack, [](LaneHit const& hit, geometry::Point const&) { return hit.distance <= slack; });
   }
 
  private:
-  using Direction = detail::LaneIndex::Direction;
-
   /// What `near` finds for a radius of `reach`, of any number.
   [[nodiscard]] std::vector<LaneHit> within(geometry::Point const& p, double reach, LaneQuery const& query) const {
     std::vector<LaneHit> hits;
-    Direction const ahead{std::cos(query.heading.value_or(0.0)), std::sin(query.heading.value_or(0.0))};
+    geometry::Point const ahead{std::cos(query.heading.value_or(0.0)), std::sin(query.heading.value_or(0.0))};
     double const least = query.heading ? std::cos(std::min(query.heading_tolerance, geometry::pi)) : -2.0;
-    auto const collect = [&](LaneHit const& hit, Direction const& d) {
-      if (hit.distance <= reach && d.x * ahead.x + d.y * ahead.y >= least) hits.push_back(hit);
+    auto const collect = [&](LaneHit const& hit, geometry::Point const& d) {
+      if (hit.distance <= reach && d.dot(ahead) >= least) hits.push_back(hit);
       return false;
     };
     drivable_.visit(p, reach, collect);

@@ -11,8 +11,9 @@ namespace cambium::map {
 /// Height of a lane's path at path position `s` [m].
 using LaneElevation = std::function<double(Lane const&, double s)>;
 
-/// The place on a lane's exact path, with the direction of travel, beside path position `s` [m] of the sampled one.
-using LanePose = std::function<geometry::Pose(Lane const&, double s)>;
+/// The exact path of each lane: its pose, along the direction of travel, beside path position `s` [m] of the sampled
+/// one.
+using ExactPath = std::function<geometry::Pose(Lane const&, double s)>;
 
 /// Fills `Lane::overlaps` of the drivable lanes: the stretches on which two lanes' paths are closer than `clearance`
 /// [m], on both lanes. Each end lies within 1 cm, along the path, of where the exact paths (`place`; without it, the
@@ -32,7 +33,7 @@ using LanePose = std::function<geometry::Pose(Lane const&, double s)>;
 /// split where they are closer at the stretch's begin than at its end; else a merge. For merge and split, begin and end
 /// are beside each other on the two lanes: where one lane begins or ends, so does the overlap.
 void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance,
-                   LanePose const& place = {});
+                   ExactPath const& place = {});
 
 }  // namespace cambium::map
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <span>
 #include <tuple>
-#include <vector>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
@@ -17,7 +16,6 @@
 #include "cambium/geometry/box_tree.hpp"
 #include "cambium/map/lanes/detail/lane_chords.hpp"
 #include "cambium/map/lanes/detail/overlap_ends.hpp"
-#include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/overlaps.hpp"
 
 /// How overlaps are found. The paths of all drivable lanes become chords, straight to within 1 cm, and a tree of their
@@ -33,7 +31,7 @@ namespace detail {
 /// See `find_overlaps`.
 class OverlapFinder {
  public:
-  OverlapFinder(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance, LanePose const& place)
+  OverlapFinder(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance, ExactPath const& place)
       : lanes_(lanes), elevation_(elevation), clearance_(clearance), ends_(place, clearance) {}
 
   void find() {
@@ -41,16 +39,15 @@ class OverlapFinder {
     find_related();
     find_contacts();
     for (auto& lane : lanes_)
-      cambium::detail::stable_sort_by(lane.overlaps, [](Overlap const& l, Overlap const& r) {
-        return std::tie(l.begin, l.other, l.other_begin) < std::tie(r.begin, r.other, r.other_begin);
-      });
+      cambium::detail::stable_sort(lane.overlaps,
+                                   [](Overlap const& o) { return std::tuple(o.begin, o.other, o.other_begin); });
   }
 
  private:
   /// Stretches of the lanes `a` <= `b` that are close to each other.
   struct Contact {
     std::uint32_t a, b;
-    Stretch on_a, on_b;
+    PathStretch on_a, on_b;
   };
 
   /// A lane linked with another one, at a common joint.
@@ -115,12 +112,13 @@ class OverlapFinder {
   /// Whether the lanes are close because they are linked: the contact reaches their common joint, or nearly so.
   [[nodiscard]] bool is_at_joint(Contact const& c) const { return is_at_joint(c.a, c.on_a, c.b, c.on_b); }
 
-  [[nodiscard]] bool is_at_joint(std::uint32_t a, Stretch const& on_a, std::uint32_t b, Stretch const& on_b) const {
+  [[nodiscard]] bool is_at_joint(std::uint32_t a, PathStretch const& on_a, std::uint32_t b,
+                                 PathStretch const& on_b) const {
     constexpr double near = 10.0;  // [m] along the paths: no loop is so short
-    auto const left = [&](std::uint32_t i, Stretch const& on, bool to_end) {
+    auto const left = [&](std::uint32_t i, PathStretch const& on, bool to_end) {
       return to_end ? lanes_[i].length() - on.end : on.begin;
     };
-    auto const holds = [&](std::uint32_t i, Stretch const& on, std::uint32_t j, Stretch const& on_other) {
+    auto const holds = [&](std::uint32_t i, PathStretch const& on, std::uint32_t j, PathStretch const& on_other) {
       return std::any_of(joints_[i].begin(), joints_[i].end(), [&](Joint const& joint) {
         return index_of(joint.other) == j &&
                left(i, on, joint.at_end) + joint.between + left(j, on_other, joint.at_other_end) < near;
@@ -175,6 +173,11 @@ class OverlapFinder {
     contacts_.clear();
   }
 
+  /// Whether the two have a point in common, up to a millimetre.
+  [[nodiscard]] static bool touch(PathStretch const& l, PathStretch const& r) {
+    return l.begin <= r.end + 1e-3 && r.begin <= l.end + 1e-3;
+  }
+
   void add_contact(LaneChord const& a, LaneChord const& b) {
     if (auto const* last = last_contact(b); last && last->on_a.has(a.on_path) && last->on_b.has(b.on_path)) return;
     if (are_beside(a, b)) return;
@@ -182,7 +185,7 @@ class OverlapFinder {
     if (!on_a) return;
     auto const on_b = stretch_near(b, a, clearance_);
     if (!on_b || pass_over(a, *on_a, b, *on_b)) return;
-    if (auto* last = last_contact(b); last && last->on_a.touches(*on_a) && last->on_b.touches(*on_b)) {
+    if (auto* last = last_contact(b); last && touch(last->on_a, *on_a) && touch(last->on_b, *on_b)) {
       last->on_a.add(*on_a);
       last->on_b.add(*on_b);
       return;
@@ -192,7 +195,8 @@ class OverlapFinder {
   }
 
   /// Whether one of the lanes is a bridge over the other, all along the stretches.
-  [[nodiscard]] bool pass_over(LaneChord const& a, Stretch const& on_a, LaneChord const& b, Stretch const& on_b) const {
+  [[nodiscard]] bool pass_over(LaneChord const& a, PathStretch const& on_a, LaneChord const& b,
+                               PathStretch const& on_b) const {
     if (!elevation_) return false;
     constexpr double clear_height = 3.0;  // [m] enough for one to pass under the other
     bool const same_way = a.ux * b.ux + a.uy * b.uy > 0.0;
@@ -216,7 +220,7 @@ class OverlapFinder {
   /// Adds a contact of one pair of lanes, joined with those that it touches on both of them.
   static void add_joined(Contact contact, std::vector<Contact>& groups) {
     for (std::size_t i = 0; i < groups.size();) {
-      if (!groups[i].on_a.touches(contact.on_a) || !groups[i].on_b.touches(contact.on_b)) {
+      if (!touch(groups[i].on_a, contact.on_a) || !touch(groups[i].on_b, contact.on_b)) {
         ++i;
         continue;
       }
@@ -250,7 +254,8 @@ class OverlapFinder {
   }
 
   /// Angle between the lanes' directions in the middle of the stretches [rad].
-  [[nodiscard]] static double turn_between(Lane const& a, Stretch const& on_a, Lane const& b, Stretch const& on_b) {
+  [[nodiscard]] static double turn_between(Lane const& a, PathStretch const& on_a, Lane const& b,
+                                           PathStretch const& on_b) {
     return std::abs(geometry::angle_difference(a.path.pose(on_a.middle()).heading, b.path.pose(on_b.middle()).heading));
   }
 
@@ -282,7 +287,7 @@ class OverlapFinder {
 }  // namespace detail
 
 CAMBIUM_COLD void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance,
-                                LanePose const& place) {
+                                ExactPath const& place) {
   detail::OverlapFinder(lanes, elevation, clearance, place).find();
 }
 

@@ -70,16 +70,13 @@ inline void add_lanes_at(Road const& road, StationOffset const& foot, std::vecto
   for (auto const& hit : map.lanes_near(p, reach))
     detail::add_lanes_at(map.road(map.lane(hit.lane).road), exact_place(map, p, hit), places);
   // The lanes of a road lead to the same places.
-  cambium::detail::stable_sort_by(places, [](RoadPlace const& a, RoadPlace const& b) {
-    return std::tie(a.road, a.number, a.s) < std::tie(b.road, b.number, b.s);
-  });
+  cambium::detail::stable_sort(places, [](RoadPlace const& at) { return std::tuple(at.road, at.number, at.s); });
   auto const is_same = [](RoadPlace const& a, RoadPlace const& b) {
     return a.road == b.road && a.number == b.number && std::abs(a.s - b.s) < 1e-6;
   };
   places.erase(std::unique(places.begin(), places.end(), is_same), places.end());
-  cambium::detail::stable_sort_by(places, [](RoadPlace const& a, RoadPlace const& b) {
-    return std::tie(a.distance, a.road, a.number, a.s) < std::tie(b.distance, b.road, b.number, b.s);
-  });
+  cambium::detail::stable_sort(places,
+                               [](RoadPlace const& at) { return std::tuple(at.distance, at.road, at.number, at.s); });
   return places;
 }
 

@@ -13,8 +13,8 @@ namespace cambium::map {
 /// What a sign or light at the road tells the traffic of a lane.
 enum class SignalKind : std::uint8_t {
   priority,  ///< it goes before traffic without that sign: 301, 306 of the German catalogue, which OpenDRIVE files use
-  give_way,  ///< it lets the other's traffic go first: 205
-  stop,      ///< so it does, and stops before: 206
+  give_way,  ///< it gives way to other traffic: 205
+  stop,      ///< it stops, then gives way: 206
   light,     ///< a traffic light: 1000001
 };
 
@@ -56,7 +56,7 @@ struct LightPlan {
 
   friend bool operator==(LightPlan const&, LightPlan const&) = default;
 
-  /// Whether it is one: phases that are not negative, within a day.
+  /// Whether its phases are not negative, and within a day.
   [[nodiscard]] bool is_possible() const {
     constexpr double day = 86'400.0;
     return cycle >= 0.0 && cycle <= day && yellow >= 0.0 && yellow <= day && std::abs(green_begin) <= day &&
@@ -72,7 +72,7 @@ struct LightPlan {
     return passed < green + yellow ? LightColor::yellow : LightColor::red;
   }
 
-  /// For how long it has been red at `time` [s]; below 0 while it is green or yellow: it turns red in that time. 0 of a
+  /// Time since the light turned red at `time` [s]; while it is green or yellow, minus the time until it does. 0 for a
   /// light that is off. O(1).
   [[nodiscard]] double red_for(double time) const {
     if (!(cycle > 0.0)) return 0.0;

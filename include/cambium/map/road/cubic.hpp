@@ -50,7 +50,7 @@ struct CubicRecord {
   return {low, high};
 }
 
-/// What a profile is worth before its first record: 0 (lane offset, elevation), or the first record's starting value
+/// Value of a profile before its first record: 0 (lane offset, elevation), or the first record's starting value
 /// (widths).
 enum class BeforeFirst { zero, hold };
 

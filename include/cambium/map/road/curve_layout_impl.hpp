@@ -4,17 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
-#include <span>
-#include <string>
-#include <vector>
 
-#include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/geometry/pose.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/map/road/parametric_cubic.hpp"
-#include "cambium/map/road/reference_line.hpp"
 
 namespace cambium::map {
 

@@ -9,20 +9,21 @@
 
 namespace cambium::map {
 
+/// A point of a curve with its tangent, and derivatives by arc length.
+struct CurvePoint {
+  double x{};                     ///< [m]
+  double y{};                     ///< [m]
+  double heading{};               ///< not wrapped: start heading plus the curvature's integral [rad]
+  double curvature{};             ///< left positive [1/m]
+  double curvature_derivative{};  ///< [1/m^2]
+};
+
 /// A planar curve u(p) = a + b p + c p^2 + d p^3, v(p) likewise, p from 0 to `end()`, in a frame of its own (u forward,
 /// v to the left), that can be asked by arc length: OpenDRIVE's paramPoly3, and poly3 with u = p. The parameter of an
 /// arc length is found by Newton's method on a quadrature, to 1e-12 of the curve's length.
 class ParametricCubic {
  public:
   using Coefficients = std::array<double, 4>;  ///< a, b, c, d
-
-  /// A point by arc length, with derivatives by arc length.
-  struct Point {
-    double u{}, v{};                ///< [m]
-    double turn{};                  ///< direction, from that at the start [rad]
-    double curvature{};             ///< left positive [1/m]
-    double curvature_derivative{};  ///< [1/m^2]
-  };
 
   /// O(1), some microseconds.
   ParametricCubic(Coefficients const& u, Coefficients const& v, double end) : u_(u), v_(v), end_(end) {
@@ -53,14 +54,15 @@ class ParametricCubic {
     return true;
   }
 
-  /// The point at arc length `arc` [m]; outside [0, length] straight on along the tangent of that end.
-  [[nodiscard]] Point at(double arc) const {
+  /// The point at arc length `arc` [m], in the frame of u and v, but with the heading counted from the direction at the
+  /// start; outside [0, length] straight on along the tangent of that end.
+  [[nodiscard]] CurvePoint at(double arc) const {
     double const inside = std::fmin(std::fmax(arc, 0.0), length());
     double const p = parameter_at(inside), beyond = arc - inside;
     double const du = slope(u_, p), dv = slope(v_, p), w = std::sqrt(du * du + dv * dv);
     double const start_u = u_[1], start_v = v_[1];
-    Point point{value(u_, p) + beyond * du / w, value(v_, p) + beyond * dv / w,
-                std::atan2(start_u * dv - start_v * du, start_u * du + start_v * dv), 0.0, 0.0};
+    CurvePoint point{value(u_, p) + beyond * du / w, value(v_, p) + beyond * dv / w,
+                     std::atan2(start_u * dv - start_v * du, start_u * du + start_v * dv), 0.0, 0.0};
     if (beyond != 0.0) return point;
     double const ddu = 2 * u_[2] + 6 * u_[3] * p, ddv = 2 * v_[2] + 6 * v_[3] * p;
     point.curvature = (du * ddv - dv * ddu) / (w * w * w);

@@ -11,6 +11,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/pose.hpp"
 #include "cambium/map/road/detail/quadrature.hpp"
 #include "cambium/map/road/parametric_cubic.hpp"
 
@@ -39,21 +40,7 @@ struct Geometry {
   }
 };
 
-/// A point of a reference line with its tangent.
-struct CurvePoint {
-  double x{};                     ///< [m]
-  double y{};                     ///< [m]
-  double heading{};               ///< not wrapped: start heading plus the curvature's integral [rad]
-  double curvature{};             ///< left positive [1/m]
-  double curvature_derivative{};  ///< by arc length [1/m^2]
-};
-
 namespace detail {
-
-struct Displacement {
-  double x{};
-  double y{};
-};
 
 /// sin(u) / u, exact to rounding for every u.
 [[nodiscard]] inline double sinc(double u) {
@@ -63,38 +50,35 @@ struct Displacement {
 
 /// Integral of (cos, sin)(heading + curvature u + curvature_rate u^2 / 2) for u over [begin, end], by one panel.
 template <std::size_t N>
-[[nodiscard]] Displacement spiral_panel(HalfRule<N> const& rule, double heading, double curvature,
-                                        double curvature_rate, double begin, double end) {
+[[nodiscard]] geometry::Point spiral_panel(HalfRule<N> const& rule, double heading, double curvature,
+                                           double curvature_rate, double begin, double end) {
   double const middle = 0.5 * (begin + end);
   double const half = 0.5 * (end - begin);
-  Displacement sum;
+  geometry::Point sum;
   for (std::size_t i = 0; i < N; ++i) {
     for (double const u : {middle - half * rule.node[i], middle + half * rule.node[i]}) {
       auto const [sin, cos] = geometry::sin_cos(heading + u * (curvature + 0.5 * curvature_rate * u));
-      sum.x += rule.weight[i] * cos;
-      sum.y += rule.weight[i] * sin;
+      sum += rule.weight[i] * geometry::Point(cos, sin);
     }
   }
-  return {half * sum.x, half * sum.y};
+  return half * sum;
 }
 
 /// As `spiral_panel`, on panels over which the heading turns by at most 0.7 rad (20 points) or, where the whole
 /// interval turns by at most 0.05 rad, on one (6 points): 1e-12 m, with no special case for small curvatures or rates.
 /// Beyond 4096 panels (2800 rad) the result is finite but no longer accurate.
-[[nodiscard]] inline Displacement spiral_displacement(double heading, double curvature, double curvature_rate,
-                                                      double begin, double end) {
+[[nodiscard]] inline geometry::Point spiral_displacement(double heading, double curvature, double curvature_rate,
+                                                         double begin, double end) {
   double const steepest =
       std::max(std::abs(curvature + curvature_rate * begin), std::abs(curvature + curvature_rate * end));
   double const turn = steepest * std::abs(end - begin);
   if (turn <= 0.05) return spiral_panel(gauss_6, heading, curvature, curvature_rate, begin, end);
   int const panels = static_cast<int>(std::min(4096.0, std::ceil(turn / 0.7)));
-  Displacement sum;
+  geometry::Point sum;
   for (int i = 0; i < panels; ++i) {
     double const from = begin + (end - begin) * i / panels;
     double const to = begin + (end - begin) * (i + 1) / panels;
-    Displacement const panel = spiral_panel(gauss_20, heading, curvature, curvature_rate, from, to);
-    sum.x += panel.x;
-    sum.y += panel.y;
+    sum += spiral_panel(gauss_20, heading, curvature, curvature_rate, from, to);
   }
   return sum;
 }
@@ -112,8 +96,8 @@ namespace detail {
   double const stretch = g.cubic->length() / g.length;
   auto const local = g.cubic->at(ds * stretch);
   double const cos = std::cos(g.heading), sin = std::sin(g.heading);
-  return {g.x + cos * local.u - sin * local.v, g.y + sin * local.u + cos * local.v,
-          g.heading + g.cubic->start_direction() + local.turn, local.curvature, local.curvature_derivative};
+  return {g.x + cos * local.x - sin * local.y, g.y + sin * local.x + cos * local.y,
+          g.heading + g.cubic->start_direction() + local.heading, local.curvature, local.curvature_derivative};
 }
 
 }  // namespace detail
@@ -127,9 +111,9 @@ namespace detail {
   CurvePoint p{g.x, g.y, g.heading, g.curvature_start + rate * ds, rate};
   p.heading += ds * (g.curvature_start + 0.5 * rate * ds);
   if (g.kind == GeometryKind::spiral) {
-    detail::Displacement const d = detail::spiral_displacement(g.heading, g.curvature_start, rate, 0.0, ds);
-    p.x += d.x;
-    p.y += d.y;
+    auto const d = detail::spiral_displacement(g.heading, g.curvature_start, rate, 0.0, ds);
+    p.x += d.x();
+    p.y += d.y();
     return p;
   }
   double const half_turn = 0.5 * g.curvature_start * ds;
@@ -146,7 +130,7 @@ namespace detail {
   if (g.kind != GeometryKind::spiral) return evaluate(g, s - g.s);
   double const rate = curvature_rate(g), ds = s - g.s;
   auto const d = detail::spiral_displacement(g.heading, g.curvature_start, rate, from_s - g.s, ds);
-  return {from.x + d.x, from.y + d.y, g.heading + ds * (g.curvature_start + 0.5 * rate * ds),
+  return {from.x + d.x(), from.y + d.y(), g.heading + ds * (g.curvature_start + 0.5 * rate * ds),
           g.curvature_start + rate * ds, rate};
 }
 

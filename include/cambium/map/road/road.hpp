@@ -14,7 +14,7 @@
 
 namespace cambium::map {
 
-/// Height of a lane's borders above the road's surface from `s` on (from the section's start), a kerb say [m].
+/// Height of a lane's borders above the road's surface [m], as at a kerb, from `s` after the section's start on.
 struct LaneHeight {
   double s{}, inner{}, outer{};
 };

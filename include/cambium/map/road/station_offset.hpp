@@ -93,7 +93,7 @@ class FootFinder {
 
 /// The foot point of `p` on `line` next to station `near` [m]: a local minimum of the distance to the exact curve, by
 /// Newton's method to 1e-9 m. It is the nearest one of all while `near` is on the same side of the curve's other bends.
-/// Some evaluations of the line. Precondition: the line is not empty.
+/// Costs a few evaluations of the line. Precondition: the line is not empty.
 [[nodiscard]] inline StationOffset project(ReferenceLine const& line, geometry::Point const& p, double near) {
   CAMBIUM_ASSERT(!line.empty(), "a reference line needs a geometry before a point can be projected onto it");
   return detail::FootFinder(line, p).from(near);

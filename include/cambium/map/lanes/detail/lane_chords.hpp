@@ -12,28 +12,12 @@
 
 namespace cambium::map::detail {
 
-/// A stretch of something [m].
-struct Stretch {
-  double begin{}, end{};
-
-  [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
-  /// Whether the two have a point in common, up to a millimetre.
-  [[nodiscard]] bool touches(Stretch const& o) const { return begin <= o.end + 1e-3 && o.begin <= end + 1e-3; }
-  [[nodiscard]] bool has(Stretch const& o) const { return begin <= o.begin && o.end <= end; }
-  /// How far the two are apart; negative where they overlap.
-  [[nodiscard]] double gap(Stretch const& o) const { return std::max(begin, o.begin) - std::min(end, o.end); }
-  void add(Stretch const& o) {
-    begin = std::min(begin, o.begin);
-    end = std::max(end, o.end);
-  }
-};
-
 /// A straight piece that stands for a stretch of a lane's path.
 struct LaneChord {
   std::uint32_t lane{};
   double x{}, y{}, ux{}, uy{}, length{};  ///< as in `geometry::Line::Segment`
-  Stretch on_path;                        ///< path positions [m]
-  Stretch on_road;                        ///< road stations [m]
+  PathStretch on_path;                    ///< path positions [m]
+  PathStretch on_road;                    ///< road stations [m]
 };
 
 /// Appends chords that keep within `tolerance` of the lane's path and are not longer than `longest` [m]: a straight
@@ -63,10 +47,10 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
     double const from = first.s, to = segments[j].s + segments[j].length;
     auto const pieces = std::max(1.0, std::ceil(length / longest));
     for (double k = 0.0; k < pieces; ++k) {
-      Stretch const on_path{from + k / pieces * (to - from), from + (k + 1.0) / pieces * (to - from)};
-      Stretch const on_road =
-          lane.along_road ? Stretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
-                          : Stretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
+      PathStretch const on_path{from + k / pieces * (to - from), from + (k + 1.0) / pieces * (to - from)};
+      PathStretch const on_road =
+          lane.along_road ? PathStretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
+                          : PathStretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
       double const along = k / pieces * length;
       chords.push_back({static_cast<std::uint32_t>(lane.id), first.x + along * ux, first.y + along * uy, ux, uy,
                         length / pieces, on_path, on_road});
@@ -77,10 +61,10 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
 
 /// The path positions of `a` that are closer than `clearance` to `b`: what is that close to `b` is convex, a rectangle
 /// with two half discs. Nothing where that is shorter than a micrometre.
-[[nodiscard]] inline std::optional<Stretch> stretch_near(LaneChord const& a, LaneChord const& b, double clearance) {
+[[nodiscard]] inline std::optional<PathStretch> stretch_near(LaneChord const& a, LaneChord const& b, double clearance) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double const dx = a.x - b.x, dy = a.y - b.y;
-  Stretch result{infinity, -infinity};
+  PathStretch result{infinity, -infinity};
   auto const add_disc = [&](double cx, double cy) {  // where |c + s u| < clearance
     double const half = cx * a.ux + cy * a.uy;
     double const root = half * half - (cx * cx + cy * cy - clearance * clearance);
@@ -88,7 +72,7 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
   };
   add_disc(dx, dy);
   add_disc(dx - b.ux * b.length, dy - b.uy * b.length);
-  Stretch inside{-infinity, infinity};
+  PathStretch inside{-infinity, infinity};
   auto const cut = [&inside](double value, double slope, double low, double high) {
     if (std::abs(slope) < 1e-12) {
       if (value <= low || value >= high) inside = {infinity, -infinity};
@@ -103,7 +87,7 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
   result = {std::max(result.begin, 0.0), std::min(result.end, a.length)};
   if (!(result.end - result.begin > 1e-6)) return std::nullopt;
   double const scale = (a.on_path.end - a.on_path.begin) / a.length;
-  return Stretch{a.on_path.begin + scale * result.begin, a.on_path.begin + scale * result.end};
+  return PathStretch{a.on_path.begin + scale * result.begin, a.on_path.begin + scale * result.end};
 }
 
 }  // namespace cambium::map::detail

@@ -32,10 +32,6 @@ using geometry::Box;
 /// A packed R-tree over stretches of lanes' paths with the borders beside them; see `LaneTree`.
 class LaneIndex {
  public:
-  struct Direction {
-    double x, y;
-  };
-
   void add(Lane const& lane) {
     auto const segments = lane.path.segments();
     CAMBIUM_ASSERT(lane.widths.size() == segments.size() + 1, "a lane has widths at each vertex of its path");
@@ -62,7 +58,7 @@ class LaneIndex {
       LaneHit hit;
       auto const [first, end] = runs_[box];
       for (auto i = first; i < end; ++i)
-        if (foot(i, p, hit) && visit(hit, Direction{stretches_[i].ux, stretches_[i].uy})) return true;
+        if (foot(i, p, hit) && visit(hit, geometry::Point(stretches_[i].ux, stretches_[i].uy))) return true;
       return false;
     });
   }
@@ -93,9 +89,7 @@ class LaneIndex {
         geometry::Point(g.x + g.uy * g.begin.right, g.y - g.ux * g.begin.right),
         geometry::Point(g.x + g.ux * g.length + g.uy * g.end.right, g.y + g.uy * g.length - g.ux * g.end.right),
         geometry::Point(g.x + g.ux * g.length - g.uy * g.end.left, g.y + g.uy * g.length + g.ux * g.end.left)};
-    geometry::Box around;
-    for (auto const& p : quad) around.add(p.x(), p.y());
-    if (!around.intersects(box)) return false;
+    if (!geometry::box_around(quad).intersects(box)) return false;
     for (std::size_t i = 0; i < 4; ++i) {
       auto const &a = quad[i], &b = quad[(i + 1) % 4];
       // Counter-clockwise: the inside is to the left. The corner of the box that is farthest to the left:

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanes/detail/lane_chords.hpp"
 #include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/lanes/overlaps.hpp"
 
 namespace cambium::map {
 
@@ -17,17 +17,15 @@ namespace detail {
 /// Moves the ends of an overlap from where they are on chords to where they are on the lanes' exact paths.
 class OverlapEnds {
  public:
-  using Place = std::function<geometry::Pose(Lane const&, double s)>;
-
   /// Without `place` the sampled paths are the exact ones.
-  OverlapEnds(Place const& place, double clearance) : place_(place), clearance_(clearance) {}
+  OverlapEnds(ExactPath const& place, double clearance) : place_(place), clearance_(clearance) {}
 
   /// Lets the stretches begin and end where one lane is as far from the other as the clearance. False where the exact
   /// paths do not come so near.
-  [[nodiscard]] bool refine(Lane const& a, Stretch& on_a, Lane const& b, Stretch& on_b) const {
+  [[nodiscard]] bool refine(Lane const& a, PathStretch& on_a, Lane const& b, PathStretch& on_b) const {
     bool const same_way = std::cos(a.path.pose(on_a.middle()).heading - b.path.pose(on_b.middle()).heading) > 0.0;
-    Stretch const near_b = same_way ? on_b : Stretch{on_b.end, on_b.begin},
-                  near_a = same_way ? on_a : Stretch{on_a.end, on_a.begin};
+    PathStretch const near_b = same_way ? on_b : PathStretch{on_b.end, on_b.begin},
+                      near_a = same_way ? on_a : PathStretch{on_a.end, on_a.begin};
     auto const a_begin = refined(a, on_a.begin, on_a.end, b, near_b.begin),
                a_end = refined(a, on_a.end, on_a.begin, b, near_b.end),
                b_begin = refined(b, on_b.begin, on_b.end, a, near_a.begin),
@@ -38,9 +36,9 @@ class OverlapEnds {
     return on_a.begin < on_a.end && on_b.begin < on_b.end;
   }
 
-  /// Where `a` begins or ends within the overlap, lets the stretch on `b` do so beside it: what is near to `a` beyond
-  /// its end is so to the lane behind it.
-  void trim(Lane const& a, Stretch const& on_a, Lane const& b, Stretch& on_b) const {
+  /// Clips the stretch on `b` where `a` begins or ends within the overlap: what lies beyond belongs to the lane behind
+  /// `a`.
+  void trim(Lane const& a, PathStretch const& on_a, Lane const& b, PathStretch& on_b) const {
     constexpr double tolerance = 1e-3;
     if (on_a.begin == 0.0) {
       double const s = beside(at(a, 0.0), b, on_b.begin).begin;
@@ -142,7 +140,7 @@ class OverlapEnds {
 
   /// The foot point of the lane end `end` on `b`, and the place on `b` from which `end` is the foot point, in the order
   /// of `b`; the same for lanes side by side.
-  [[nodiscard]] Stretch beside(geometry::Pose const& end, Lane const& b, double near) const {
+  [[nodiscard]] PathStretch beside(geometry::Pose const& end, Lane const& b, double near) const {
     double const foot_point = foot(end.position(), b, near).s;
     double const ux = std::cos(end.heading), uy = std::sin(end.heading);
     double other = foot_point;
@@ -157,7 +155,7 @@ class OverlapEnds {
     return {std::min(p, q), std::max(p, q)};
   }
 
-  Place const& place_;
+  ExactPath const& place_;
   double clearance_;
 };
 
