@@ -28,7 +28,7 @@ void require_readable(std::size_t bytes, std::string const& name, FileKind const
 }
 
 namespace detail {
-/// How many bytes the file says that it has; 0 where it does not, as pipes, or is a folder.
+/// File size [bytes]; 0 if unknown (pipes, folders).
 [[nodiscard]] inline std::size_t size_of(std::ifstream& file) {
   auto const size = static_cast<std::streamoff>(file.seekg(0, std::ios::end).tellg());
   file.clear();

@@ -8,7 +8,6 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/document.hpp"
-#include "cambium/map/opendrive/reading_limits.hpp"
 
 #ifdef CAMBIUM_COMPILED_WITHOUT_READER
 #error "cambium::compiled has no OpenDRIVE reader because CMake did not find pugixml: install it (libpugixml-dev)"
@@ -16,7 +15,7 @@
 
 namespace cambium::map {
 
-/// A map that was read, and what was odd about it.
+/// A map read from a file, and the findings about it.
 struct LoadedMap {
   std::shared_ptr<Map const> map;
   std::vector<Diagnostic> diagnostics;

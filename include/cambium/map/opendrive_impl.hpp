@@ -1,15 +1,10 @@
 #pragma once
 
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/building/build_map.hpp"
 #include "cambium/map/detail/read_map_file.hpp"
-#include "cambium/map/map.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 

@@ -3,10 +3,18 @@
 #include <cstddef>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 namespace cambium::map::detail {
 
-/// Where elements of a document are, by their ids, which must live as long. One type for all that look ids up.
+/// Indices of a document's elements by their ids. The ids must outlive it.
 using IdPlaces = std::unordered_map<std::string_view, std::size_t>;
+
+template <class Element>
+[[nodiscard]] IdPlaces places_of(std::vector<Element> const& elements) {
+  IdPlaces places;
+  for (std::size_t i = 0; i < elements.size(); ++i) places.emplace(elements[i].id, i);
+  return places;
+}
 
 }  // namespace cambium::map::detail

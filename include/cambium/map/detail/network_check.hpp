@@ -45,17 +45,9 @@ class NetworkCheck {
   }
 
  private:
-  [[nodiscard]] static geometry::Pose begin_of(geometry::Line const& line) {
-    std::uint32_t first = 0;
-    return line.pose(0.0, first);
-  }
-  [[nodiscard]] static geometry::Pose end_of(geometry::Line const& line) {
-    auto last = static_cast<std::uint32_t>(line.segments().size() - 1);
-    return line.pose(line.length(), last);
-  }
   [[nodiscard]] static double distance(geometry::Line const& before, geometry::Line const& behind) {
     if (before.empty() || behind.empty()) return 0.0;  // a border without length
-    return (end_of(before).position() - begin_of(behind).position()).norm();
+    return (before.end_pose().position() - behind.begin_pose().position()).norm();
   }
 
   void check_links(Lane const& lane, std::vector<LaneId> const& links, std::vector<LaneId> Lane::*back) {
@@ -76,7 +68,7 @@ class NetworkCheck {
     if (!next.drivable() || next.path.empty()) return;
     double const gap = distance(lane.path, next.path);
     if (gap > tolerances_.gap) findings_.push_back({NetworkFault::gap, lane.id, id, gap});
-    double const turn = geometry::angle_difference(begin_of(next.path).heading, end_of(lane.path).heading);
+    double const turn = geometry::angle_difference(next.path.begin_pose().heading, lane.path.end_pose().heading);
     bool const is_kink = std::abs(turn) > tolerances_.kink;
     if (is_kink) findings_.push_back({NetworkFault::kink, lane.id, id, turn});
     double const step = std::max(distance(lane.left, next.left), distance(lane.right, next.right));
@@ -101,7 +93,8 @@ class NetworkCheck {
     for (auto const& lane : lanes_) {
       if (!lane.drivable() || lane.path.empty() || !lane.predecessors.empty()) continue;
       begins_.push_back(lane.id);
-      places.emplace_back().add(begin_of(lane.path).x, begin_of(lane.path).y);
+      auto const begin = lane.path.begin_pose().position();
+      places.push_back(geometry::box_around({&begin, 1}));
     }
     begin_tree_ = geometry::BoxTree(places);
   }
@@ -109,14 +102,14 @@ class NetworkCheck {
   /// The nearest begin within the tolerances; of equal ones the first lane's.
   template <class Permits>
   void find_possible_link(Lane const& lane, Permits const& permits) {
-    auto const end = end_of(lane.path);
+    auto const end = lane.path.end_pose();
     double const reach = tolerances_.link_distance;
     double best = reach;
     LaneId with = none<LaneId>;
     begin_tree_.visit({end.x - reach, end.y - reach, end.x + reach, end.y + reach}, [&](std::uint32_t i) {
       auto const& other = lanes_[index_of(begins_[i])];
       if (other.id == lane.id || other.id == lane.opposite) return false;
-      auto const begin = begin_of(other.path);
+      auto const begin = other.path.begin_pose();
       double const apart = (begin.position() - end.position()).norm();
       if (!(apart < best || (apart == best && !(with < other.id)))) return false;
       if (std::abs(geometry::angle_difference(begin.heading, end.heading)) > tolerances_.link_direction) return false;

@@ -16,7 +16,7 @@
 
 namespace cambium::map::detail {
 
-/// Whether a map can be moved by an offset: by no more than the coordinates of geometries may be.
+/// Whether an offset of a header is finite and within the range of coordinates.
 [[nodiscard]] inline bool is_bearable(opendrive::HeaderOffset const& offset) {
   return std::abs(offset.x) <= 1e8 && std::abs(offset.y) <= 1e8 && std::abs(offset.z) <= 1e8 &&
          std::abs(offset.heading) <= 1e4;
@@ -66,10 +66,11 @@ class RequireBuildable {
       auto const& section = road.lane_sections[k];
       require(std::isfinite(section.s) && (k == 0 || road.lane_sections[k - 1].s <= section.s),
               "its lane sections are not in the order of s", "sort them; s must be finite");
-      bool const is_ordered = std::adjacent_find(section.lanes.begin(), section.lanes.end(),
-                                                 [](opendrive::LaneElement const& left, opendrive::LaneElement const& right) {
-                                                   return left.id <= right.id;
-                                                 }) == section.lanes.end();
+      bool const is_ordered =
+          std::adjacent_find(section.lanes.begin(), section.lanes.end(),
+                             [](opendrive::LaneElement const& left, opendrive::LaneElement const& right) {
+                               return left.id <= right.id;
+                             }) == section.lanes.end();
       require(is_ordered, "the lanes of a section are not ordered from left to right, or one occurs twice",
               "sort them by descending id");
       for (auto const& lane : section.lanes) check_lane(lane);

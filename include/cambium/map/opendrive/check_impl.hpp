@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string>
+#include <unordered_set>
 #include <utility>
-#include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/detail/findings.hpp"
@@ -18,7 +16,6 @@
 #include "cambium/map/opendrive/check.hpp"
 #include "cambium/map/opendrive/detail/geometry_check.hpp"
 #include "cambium/map/opendrive/detail/record_check.hpp"
-#include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/lane_type.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
@@ -64,20 +61,13 @@ class DocumentCheck {
   /// Collects the ids and removes later elements of an id that was there before.
   template <class Element>
   void index(std::vector<Element>& elements, IdPlaces& ids, char const* kind, char const* sentence) {
-    std::vector<bool> is_second(elements.size());  // marked first: the keys are views of ids that must not move
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      is_second[i] = !ids.emplace(elements[i].id, i).second;
-      if (is_second[i]) findings_.add(Severity::warning, elements[i].line, kind, "", "id " + elements[i].id + sentence);
-    }
-    ids.clear();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < elements.size(); ++i) {
-      if (is_second[i]) continue;
-      if (kept != i) std::swap(elements[kept], elements[i]);
-      ++kept;
-    }
-    elements.resize(kept);
-    for (std::size_t i = 0; i < kept; ++i) ids.emplace(elements[i].id, i);
+    std::unordered_set<std::string> known;
+    std::erase_if(elements, [&](Element const& element) {
+      bool const is_second = !known.insert(element.id).second;
+      if (is_second) findings_.add(Severity::warning, element.line, kind, "", "id " + element.id + sentence);
+      return is_second;
+    });
+    ids = places_of(elements);
   }
 
   /// The junctions with linked connecting roads, and no drivable lane on any: these need no connections.
@@ -87,8 +77,9 @@ class DocumentCheck {
       if (road.junction.empty()) continue;
       bool const is_driven =
           std::any_of(road.lane_sections.begin(), road.lane_sections.end(), [](opendrive::LaneSection const& section) {
-            return std::any_of(section.lanes.begin(), section.lanes.end(),
-                               [](opendrive::LaneElement const& lane) { return lane.id != 0 && is_drivable(lane.type); });
+            return std::any_of(section.lanes.begin(), section.lanes.end(), [](opendrive::LaneElement const& lane) {
+              return lane.id != 0 && is_drivable(lane.type);
+            });
           });
       if (is_driven)
         driven.emplace(road.junction, 0);

@@ -50,7 +50,7 @@ struct Header {
   HeaderOffset offset;
   std::string geo_reference;  ///< projection string, empty when absent
   Rest rest;                  ///< version, date, bounds, user data, ...
-  FileLine line;                  ///< 0: the file has no header
+  FileLine line;              ///< 0: the file has no header
 
   friend bool operator==(Header const&, Header const&) = default;
 };
@@ -112,7 +112,7 @@ struct RoadElement {
   std::optional<RoadLink> successor;
   std::vector<RoadType> types;               ///< sorted
   std::vector<Geometry> geometries;          ///< sorted, at least one, header offset not applied
-  std::vector<FileLine> geometry_lines;          ///< of each geometry
+  std::vector<FileLine> geometry_lines;      ///< of each geometry
   std::vector<GeometryRest> geometry_rests;  ///< of the few geometries that have one, by rising index
   std::vector<CubicRecord> elevation;        ///< sorted; z(s) without the header offset
   std::vector<CubicRecord> superelevation;   ///< sorted [rad]

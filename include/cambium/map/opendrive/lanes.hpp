@@ -55,23 +55,23 @@ struct LaneElement {
   int id = 0;  ///< left > 0, right < 0, counted from the centre lane 0
   LaneType type = LaneType::none;
   LaneDirection direction = LaneDirection::standard;
-  std::vector<int> predecessors;     ///< lane ids at the section's start, as written
-  std::vector<int> successors;       ///< lane ids at the section's end
-  std::vector<CubicRecord> widths;   ///< sorted; s counts from the section's start
-  std::vector<CubicRecord> borders;  ///< sorted; outer border's t, in force only where there are no widths
-  std::vector<RoadMark> road_marks;  ///< of the outer border (lane 0: of the centre line), sorted
-  std::vector<SpeedRecord> speeds;   ///< sorted; s counts from the section's start
-  std::vector<HeightRecord> heights;   ///< sorted
-  Rest rest;                         ///< who may use it, rules, materials, user data, ...
+  std::vector<int> predecessors;      ///< lane ids at the section's start, as written
+  std::vector<int> successors;        ///< lane ids at the section's end
+  std::vector<CubicRecord> widths;    ///< sorted; s counts from the section's start
+  std::vector<CubicRecord> borders;   ///< sorted; outer border's t, in force only where there are no widths
+  std::vector<RoadMark> road_marks;   ///< of the outer border (lane 0: of the centre line), sorted
+  std::vector<SpeedRecord> speeds;    ///< sorted; s counts from the section's start
+  std::vector<HeightRecord> heights;  ///< sorted
+  Rest rest;                          ///< who may use it, rules, materials, user data, ...
   FileLine line;
 
   friend bool operator==(LaneElement const&, LaneElement const&) = default;
 };
 
 struct LaneSection {
-  double s{};                ///< start station [m]
-  bool single_side = false;  ///< it speaks only for the sides that it has lanes for; the reader adds the other's
-  std::vector<LaneElement> lanes;   ///< from left to right: descending ids, unique; lane 0 is always there
+  double s{};                      ///< start station [m]
+  bool single_side = false;        ///< it speaks only for the sides that it has lanes for; the reader adds the other's
+  std::vector<LaneElement> lanes;  ///< from left to right: descending ids, unique; lane 0 is always there
   Rest rest;
   FileLine line;
 

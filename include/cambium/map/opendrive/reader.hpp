@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
-#include "cambium/core/error.hpp"
 #include "cambium/map/opendrive/document.hpp"
-#include "cambium/map/opendrive/reading_limits.hpp"
 
 #ifdef CAMBIUM_COMPILED_WITHOUT_READER
 #error "cambium::compiled has no OpenDRIVE reader because CMake did not find pugixml: install it (libpugixml-dev)"

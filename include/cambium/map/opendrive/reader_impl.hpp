@@ -5,14 +5,10 @@
 #include <cstddef>
 #include <iterator>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include <pugixml.hpp>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/detail/findings.hpp"
@@ -22,7 +18,6 @@
 #include "cambium/map/opendrive/detail/plan_view.hpp"
 #include "cambium/map/opendrive/detail/xml_context.hpp"
 #include "cambium/map/opendrive/detail/xml_root.hpp"
-#include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 
 namespace cambium::map {

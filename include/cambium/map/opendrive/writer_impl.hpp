@@ -1,10 +1,7 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -12,7 +9,6 @@
 #include "cambium/core/write_file.hpp"
 #include "cambium/map/opendrive/detail/attribute_writer.hpp"
 #include "cambium/map/opendrive/detail/lanes_writer.hpp"
-#include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 
 namespace cambium::map {
@@ -40,13 +36,12 @@ inline void write_curve(XmlText& xml, ParametricCubic const& cubic, double lengt
   if (!by_length && !is_normalized && cubic.u() == Coefficients{0, 1, 0, 0} &&
       std::abs(cubic.length() - length) <= 1e-9 * length)
     return xml.element("poly3", [&] {
-      for (std::size_t i = 0; i < 4; ++i) write_number(xml, std::string_view("abcd").substr(i, 1), cubic.v()[i]);
+      for (std::size_t i = 0; i < 4; ++i) write_number(xml, poly3_kind.attributes[i], cubic.v()[i]);
     });
-  constexpr std::array<std::string_view, 8> names{"aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV"};
   xml.element("paramPoly3", [&] {
     for (std::size_t i = 0; i < 8; ++i) {
       double const scale = by_length || is_normalized ? 1.0 : std::pow(cubic.end(), static_cast<double>(i % 4));
-      write_number(xml, names[i], scale * (i < 4 ? cubic.u() : cubic.v())[i % 4]);
+      write_number(xml, param_poly3_kind.attributes[i], scale * (i < 4 ? cubic.u() : cubic.v())[i % 4]);
     }
     xml.attribute("pRange", by_length ? "arcLength" : "normalized");
   });

@@ -74,11 +74,8 @@ class AttributeReader {
   void always(std::string_view name, T& field) {
     optional(name, field);
   }
-  void id(std::string_view name, std::string& field) {
+  void id(std::string_view name, std::string& field, std::string_view nothing = {}) {
     if (pugi::xml_attribute const found = find(name)) field = trimmed(found.value());
-  }
-  void id_or(std::string_view name, std::string& field, std::string_view nothing) {
-    id(name, field);
     if (field == nothing) field.clear();
   }
   /// A bad one makes the element unusable.
@@ -152,13 +149,11 @@ class AttributeReader {
   [[nodiscard]] bool read(pugi::xml_attribute attribute, Enum& field) {
     std::string_view const found = attribute.value();
     if (found.empty()) return true;
-    for (auto const& [word, value] : words(Enum{})) {
-      field = value;
-      if (word == found) return true;
-    }
-    if (!word_of(field).empty()) field = Enum{};
+    auto const known_one = enumerator_of<Enum>(found);
+    field = known_one ? *known_one : enumerator_of<Enum>("").value_or(Enum{});
+    if (known_one) return true;
     std::string known;
-    for (auto const& entry : words(Enum{})) add_word(known, entry.first);
+    for (auto const word : words(Enum{})) add_word(known, word);
     report_unknown_word(attribute, known, word_of(field));
     return false;
   }

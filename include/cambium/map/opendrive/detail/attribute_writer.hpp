@@ -43,9 +43,8 @@ class AttributeWriter {
   void optional(std::string_view name, T const& value) {
     if (!(value == T{})) always(name, value);
   }
-  void id(std::string_view name, std::string const& value) { optional(name, value); }
-  void id_or(std::string_view name, std::string const& value, std::string_view nothing) {
-    always(name, value.empty() ? std::string(nothing) : value);
+  void id(std::string_view name, std::string const& value, std::string_view nothing = {}) {
+    optional(name, value.empty() ? std::string(nothing) : value);
   }
 
  private:

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
+#include <cstddef>
+#include <optional>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 
 #include "cambium/map/opendrive/document.hpp"
 
@@ -14,64 +16,57 @@
 ///   visit.place(name, double)         always written; 0 without it, a bad one makes the element unusable
 ///   visit.always(name, field)         written even if it has its default value
 ///   visit.optional(name, field)       left out where it has the type's default value
-///   visit.id(name, string)            as optional; the reader takes white space off its ends
+///   visit.id(name, string, nothing)   as optional; the reader takes white space off its ends; the word `nothing` in
+///   the
+///                                     file, unless it is empty, stands for an empty id
 namespace cambium::map::detail {
 
 template <class T, class Struct>
 concept Of = std::same_as<std::remove_const_t<T>, Struct>;
 
-// The words of the enumerations. An enumerator without a word is not written; an unknown word is read as that one.
+// The words of the enumerations, by the numbers of the enumerators. An enumerator without a word is not written; an
+// unknown word is read as that one.
 
-template <class Enum, std::size_t N>
-using Words = std::array<std::pair<std::string_view, Enum>, N>;
+template <std::size_t N>
+using Words = std::array<std::string_view, N>;
 
-[[nodiscard]] constexpr auto words(opendrive::ContactPoint) {
-  using enum opendrive::ContactPoint;
-  return Words<opendrive::ContactPoint, 3>{{{"start", start}, {"end", end}, {"", none}}};
-}
-[[nodiscard]] constexpr auto words(opendrive::ElementType) {
-  using enum opendrive::ElementType;
-  return Words<opendrive::ElementType, 2>{{{"road", road}, {"junction", junction}}};
-}
-[[nodiscard]] constexpr auto words(opendrive::DrivingSide) {
-  using enum opendrive::DrivingSide;
-  return Words<opendrive::DrivingSide, 2>{{{"RHT", right_hand}, {"LHT", left_hand}}};
-}
+[[nodiscard]] constexpr auto words(opendrive::ContactPoint) { return Words<3>{"", "start", "end"}; }
+[[nodiscard]] constexpr auto words(opendrive::ElementType) { return Words<2>{"road", "junction"}; }
+[[nodiscard]] constexpr auto words(opendrive::DrivingSide) { return Words<2>{"RHT", "LHT"}; }
 [[nodiscard]] constexpr auto words(opendrive::LaneChangePermission) {
-  using enum opendrive::LaneChangePermission;
-  return Words<opendrive::LaneChangePermission, 5>{
-      {{"both", both}, {"increase", increase}, {"decrease", decrease}, {"none", none}, {"", unspecified}}};
+  return Words<5>{"", "both", "increase", "decrease", "none"};
 }
-[[nodiscard]] constexpr auto words(opendrive::LaneDirection) {
-  using enum opendrive::LaneDirection;
-  return Words<opendrive::LaneDirection, 3>{{{"standard", standard}, {"reversed", reversed}, {"both", both}}};
-}
+[[nodiscard]] constexpr auto words(opendrive::LaneDirection) { return Words<3>{"standard", "reversed", "both"}; }
 [[nodiscard]] constexpr auto words(opendrive::JunctionType) {
-  using enum opendrive::JunctionType;
-  return Words<opendrive::JunctionType, 5>{
-      {{"default", standard}, {"direct", direct}, {"virtual", virtual_}, {"crossing", crossing}, {"", other}}};
+  return Words<5>{"default", "direct", "virtual", "crossing", ""};
 }
-[[nodiscard]] constexpr auto words(opendrive::Side) {
-  using enum opendrive::Side;
-  return Words<opendrive::Side, 3>{{{"both", both}, {"left", left}, {"right", right}}};
-}
-[[nodiscard]] constexpr auto words(opendrive::SpeedUnit) {
-  using enum opendrive::SpeedUnit;
-  return Words<opendrive::SpeedUnit, 3>{
-      {{"m/s", metres_per_second}, {"km/h", kilometres_per_hour}, {"mph", miles_per_hour}}};
-}
-[[nodiscard]] constexpr auto words(opendrive::Orientation) {
-  using enum opendrive::Orientation;
-  return Words<opendrive::Orientation, 3>{{{"none", both}, {"+", along}, {"-", against}}};
-}
+[[nodiscard]] constexpr auto words(opendrive::Side) { return Words<3>{"both", "left", "right"}; }
+[[nodiscard]] constexpr auto words(opendrive::SpeedUnit) { return Words<3>{"m/s", "km/h", "mph"}; }
+[[nodiscard]] constexpr auto words(opendrive::Orientation) { return Words<3>{"none", "+", "-"}; }
 
 /// The word of an enumerator, empty when it has none.
 template <class Enum>
 [[nodiscard]] std::string_view word_of(Enum value) {
-  for (auto const& [word, known] : words(value))
-    if (known == value) return word;
-  return {};
+  return words(value)[static_cast<std::size_t>(value)];
 }
+
+/// The enumerator that has the word, nothing when none has.
+template <class Enum>
+[[nodiscard]] std::optional<Enum> enumerator_of(std::string_view word) {
+  auto const all = words(Enum{});
+  auto const at = std::find(all.begin(), all.end(), word);
+  return at == all.end() ? std::nullopt : std::optional(static_cast<Enum>(at - all.begin()));
+}
+
+/// An element that describes a curve: its name, and its attributes, of which the first eight are numbers.
+struct CurveKind {
+  std::string_view name;
+  std::array<std::string_view, 9> attributes;
+};
+inline constexpr CurveKind poly3_kind{"poly3", {"a", "b", "c", "d"}};
+inline constexpr CurveKind param_poly3_kind{"paramPoly3", {"aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV", "pRange"}};
+inline constexpr std::array curve_kinds{CurveKind{"line", {}}, CurveKind{"arc", {"curvature"}},
+                                        CurveKind{"spiral", {"curvStart", "curvEnd"}}, poly3_kind, param_poly3_kind};
 
 /// A speed of the file in m/s.
 [[nodiscard]] inline double in_metres_per_second(double value, opendrive::SpeedUnit unit) {
@@ -98,7 +93,7 @@ void fields(auto& visit, Of<opendrive::RoadElement> auto& x) {
   visit.optional("name", x.name);
   visit.always("length", x.length);
   visit.needed("id", x.id);
-  visit.id_or("junction", x.junction, "-1");
+  visit.id("junction", x.junction, "-1");
   visit.always("rule", x.rule);
 }
 

@@ -75,14 +75,12 @@ void read_speed(XmlContext& context, pugi::xml_node node, Record& record) {
   std::optional<double> const value = context.number<double>(node, "max");
   if (!value) return;
   if (*value < 0.0) return context.report(Severity::warning, node, "the speed limit is negative; no limit was read");
-  for (auto const& [word, known] : words(record.unit))
-    if (word == unit || unit.empty()) {
-      record.unit = known;
-      record.limit = in_metres_per_second(*value, known);
-      return;
-    }
-  context.report(Severity::warning, node,
-                 "unit \"" + std::string(unit) + "\" is not one of m/s, km/h, mph; no limit was read");
+  auto const known = enumerator_of<opendrive::SpeedUnit>(unit.empty() ? "m/s" : unit);
+  if (!known)
+    return context.report(Severity::warning, node,
+                          "unit \"" + std::string(unit) + "\" is not one of m/s, km/h, mph; no limit was read");
+  record.unit = *known;
+  record.limit = in_metres_per_second(*value, *known);
 }
 
 /// A speed record, left out where its place is bad.

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <iterator>
+#include <cstddef>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -12,89 +13,65 @@
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/opendrive/detail/attribute_reader.hpp"
+#include "cambium/map/opendrive/detail/fields.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
 namespace cambium::map::detail {
 
 using cambium::detail::rounded_text;
 
-[[nodiscard]] inline bool has_usable_cubic(XmlContext& context, pugi::xml_node node, Geometry const& g) {
-  if (!g.cubic->is_regular()) {
+/// Sets the curve; false where it is unusable.
+[[nodiscard]] inline bool set_cubic(XmlContext& context, pugi::xml_node node, ParametricCubic const& cubic,
+                                    Geometry& g) {
+  g.kind = GeometryKind::cubic;
+  g.cubic = std::make_shared<ParametricCubic const>(cubic);
+  if (!cubic.is_regular()) {
     context.report(Severity::warning, node, "the curve has no length, or stops somewhere");
     return false;
   }
-  double const length = g.cubic->length();
-  if (std::abs(length - g.length) > 1e-3 * g.length)
+  if (std::abs(cubic.length() - g.length) > 1e-3 * g.length)
     context.report(Severity::warning, node,
-                   "the curve is " + rounded_text(length) + " m long, its length attribute says " +
+                   "the curve is " + rounded_text(cubic.length()) + " m long, its length attribute says " +
                        rounded_text(g.length) + " m; it is stretched along to that");
   return true;
 }
 
-[[nodiscard]] inline bool read_poly3(XmlContext& context, pugi::xml_node node, Geometry& g) {
-  ParametricCubic::Coefficients v{};
-  if (!context.numbers(node, {{"a", &v[0]}, {"b", &v[1]}, {"c", &v[2]}, {"d", &v[3]}})) return false;
+/// Reads a curve from its element; false where a number is missing or bad, or the curve unusable.
+[[nodiscard]] inline bool read_kind(XmlContext& context, pugi::xml_node node, CurveKind const& kind, Geometry& g) {
+  report_others(context, node, kind.attributes);
+  std::array<double, 8> k{};
+  for (std::size_t i = 0; i < k.size() && !kind.attributes[i].empty(); ++i) {
+    auto const value = context.number<double>(node, kind.attributes[i].data());
+    if (!value) return false;
+    k[i] = *value;
+  }
+  if (kind.name == "line") return true;
+  if (kind.name == "arc" || kind.name == "spiral") {
+    g.kind = kind.name == "arc" ? GeometryKind::arc : GeometryKind::spiral;
+    g.curvature_start = k[0];
+    g.curvature_end = kind.name == "arc" ? k[0] : k[1];
+    return true;
+  }
   if (!(g.length > 0.0)) return true;  // left out later
-  g.kind = GeometryKind::cubic;
-  g.cubic = std::make_shared<ParametricCubic const>(ParametricCubic::along_u(v, g.length));
-  return has_usable_cubic(context, node, g);
-}
-
-[[nodiscard]] inline bool read_param_poly3(XmlContext& context, pugi::xml_node node, Geometry& g) {
-  ParametricCubic::Coefficients u{}, v{};
-  if (!context.numbers(node, {{"aU", &u[0]},
-                              {"bU", &u[1]},
-                              {"cU", &u[2]},
-                              {"dU", &u[3]},
-                              {"aV", &v[0]},
-                              {"bV", &v[1]},
-                              {"cV", &v[2]},
-                              {"dV", &v[3]}}))
-    return false;
-  if (!(g.length > 0.0)) return true;
+  if (kind.name == "poly3")
+    return set_cubic(context, node, ParametricCubic::along_u({k[0], k[1], k[2], k[3]}, g.length), g);
   std::string_view const range = node.attribute("pRange").value();
   if (range != "arcLength" && range != "normalized")
     context.report(Severity::warning, node, "pRange is neither arcLength nor normalized; normalized is assumed");
-  g.kind = GeometryKind::cubic;
-  g.cubic = std::make_shared<ParametricCubic const>(u, v, range == "arcLength" ? g.length : 1.0);
-  return has_usable_cubic(context, node, g);
-}
-
-[[nodiscard]] inline bool read_kind(XmlContext& context, pugi::xml_node node, std::string_view kind, Geometry& g) {
-  if (kind == "poly3") return read_poly3(context, node, g);
-  if (kind == "paramPoly3") return read_param_poly3(context, node, g);
-  if (kind == "spiral") {
-    g.kind = GeometryKind::spiral;
-    return context.numbers(node, {{"curvStart", &g.curvature_start}, {"curvEnd", &g.curvature_end}});
-  }
-  if (kind == "arc") {
-    g.kind = GeometryKind::arc;
-    if (!context.numbers(node, {{"curvature", &g.curvature_start}})) return false;
-    g.curvature_end = g.curvature_start;
-  }
-  return true;
-}
-
-/// Reports what is not read of a curve's element.
-inline void report_curve(XmlContext& context, pugi::xml_node node, std::string_view kind) {
-  if (kind == "line") return report_others(context, node, {});
-  if (kind == "arc") return report_others(context, node, {"curvature"});
-  if (kind == "spiral") return report_others(context, node, {"curvStart", "curvEnd"});
-  if (kind == "poly3") return report_others(context, node, {"a", "b", "c", "d"});
-  report_others(context, node, {"aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV", "pRange"});
+  double const end = range == "arcLength" ? g.length : 1.0;
+  return set_cubic(context, node, {{k[0], k[1], k[2], k[3]}, {k[4], k[5], k[6], k[7]}, end}, g);
 }
 
 /// The curve of a geometry element: the child that names its kind may stand anywhere among the others.
 [[nodiscard]] inline bool read_curve(XmlContext& context, pugi::xml_node node, Geometry& g, opendrive::Rest& rest) {
-  constexpr std::string_view kinds[] = {"line", "arc", "spiral", "poly3", "paramPoly3"};
   bool is_found = false, good = true;
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
-    if (std::find(std::begin(kinds), std::end(kinds), name) == std::end(kinds))
-      return keep_element(context, child, rest);
+    auto const kind =
+        std::find_if(curve_kinds.begin(), curve_kinds.end(), [name](CurveKind const& k) { return k.name == name; });
+    if (kind == curve_kinds.end()) return keep_element(context, child, rest);
     if (std::exchange(is_found, true))
       return context.report(Severity::warning, child, "the geometry has a curve already; this one was left out");
-    report_curve(context, child, name);
-    good = read_kind(context, child, name, g);
+    good = read_kind(context, child, *kind, g);
   });
   if (!is_found)
     context.report(Severity::warning, node, "the geometry is not a line, arc, spiral, poly3 or paramPoly3");

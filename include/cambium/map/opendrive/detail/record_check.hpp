@@ -18,7 +18,8 @@ namespace cambium::map::detail {
 /// Looks at a road's records along s: leaves out, and reports, those that are beyond any road.
 class RecordCheck {
  public:
-  RecordCheck(opendrive::RoadElement& road, Findings& findings) : road_(road), findings_(findings), ids_("road " + road.id) {}
+  RecordCheck(opendrive::RoadElement& road, Findings& findings)
+      : road_(road), findings_(findings), ids_("road " + road.id) {}
 
   /// Negative widths are reported, too.
   void run() {

@@ -127,15 +127,12 @@ class XmlContext {
     losses_.clear();
   }
 
-  /// The attribute as a finite number; reports a bad one, and a missing one if it is `needed`.
+  /// The attribute as a finite number; reports a missing or bad one.
   template <class Number>
-  [[nodiscard]] std::optional<Number> number(pugi::xml_node node, char const* attribute, bool needed = true) {
-    pugi::xml_attribute const found = node.attribute(attribute);
-    if (!found) {
-      if (needed) report_missing(node, attribute);
-      return std::nullopt;
-    }
-    return number<Number>(node, found);
+  [[nodiscard]] std::optional<Number> number(pugi::xml_node node, char const* attribute) {
+    if (pugi::xml_attribute const found = node.attribute(attribute)) return number<Number>(node, found);
+    report_missing(node, attribute);
+    return std::nullopt;
   }
   /// As above, of an attribute that is there.
   template <class Number>
@@ -144,15 +141,6 @@ class XmlContext {
     if (!value)
       report_no_number(node, found, std::is_integral_v<Number> ? "whole number" : "number, written like 12.5");
     return value;
-  }
-  /// Fills all of `targets` from the attributes of those names, each needed; false when one is missing or bad.
-  [[nodiscard]] bool numbers(pugi::xml_node node, std::initializer_list<std::pair<char const*, double*>> targets) {
-    for (auto const& [name, target] : targets) {
-      std::optional<double> const value = number<double>(node, name);
-      if (!value) return false;
-      *target = *value;
-    }
-    return true;
   }
 
   // The reader keeps these up to date while it goes down the tree; they name the place in a diagnostic.
@@ -213,7 +201,8 @@ inline void lose_attribute(XmlContext& context, pugi::xml_node node, pugi::xml_a
 }
 
 /// As `report_content`, and notes the attributes that are none of those `known`.
-inline void report_others(XmlContext& context, pugi::xml_node node, std::initializer_list<std::string_view> known) {
+template <class Names = std::initializer_list<std::string_view>>
+void report_others(XmlContext& context, pugi::xml_node node, Names const& known) {
   report_content(context, node);
   for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute())
     if (std::find(known.begin(), known.end(), a.name()) == known.end()) lose_attribute(context, node, a);
