@@ -11,7 +11,6 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
-#include "cambium/map/corridor/find_corridor.hpp"
 #include "cambium/map/lanes/junction.hpp"
 #include "cambium/map/lanes/lane_network.hpp"
 #include "cambium/map/lanes/right_of_way.hpp"

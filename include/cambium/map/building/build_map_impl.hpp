@@ -4,13 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/detail/lane_geometry.hpp"
@@ -27,8 +23,6 @@
 #include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/detail/require_buildable.hpp"
 #include "cambium/map/lanes/overlaps.hpp"
-#include "cambium/map/map.hpp"
-#include "cambium/map/opendrive/document.hpp"
 
 namespace cambium::map {
 
@@ -56,8 +50,7 @@ namespace detail {
 /// them. Priorities between roads that are not in the map are left out.
 [[nodiscard]] inline std::vector<Junction> make_junctions(OpenDriveDocument const& document,
                                                           std::span<Road const> roads, std::span<Lane const> lanes) {
-  IdPlaces ids;
-  for (auto const& road : roads) ids.emplace(road.name, index_of(road.id));
+  auto const ids = places_of(document.roads);
   std::vector<Junction> junctions;
   for (auto const& written : document.junctions) {
     Junction junction;

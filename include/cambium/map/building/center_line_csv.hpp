@@ -4,7 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include "cambium/core/error.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/lanes/lane.hpp"
@@ -36,8 +35,8 @@ struct CenterLine {
 /// [m]. Where the distances to the left and the right border differ, by more than 2 mm anywhere, the lane takes the
 /// smaller one on both sides (a lane's path is the middle of its borders), and the rest becomes a lane of the type
 /// shoulder, 1 or -2: so the outermost borders are the table's at its points, but nobody plans to drive on the rest.
-/// Who wants the whole width as one lane, with its middle as the path, gives `line.points` and `line.widths` to the
-/// other `lane_along`. `id`: the road's. Throws `MapError` as that.
+/// To get the whole width as one lane, with its middle as the path, pass `line.points` and `line.widths` to the other
+/// `lane_along`. `id`: the road's. Throws `MapError` as that.
 [[nodiscard]] RoadPlan lane_along(CenterLine const& line, double lane_width = 3.5, std::string const& id = {});
 
 }  // namespace cambium::map

@@ -5,22 +5,16 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/geometry/pose.hpp"
 #include "cambium/map/building/center_line_csv.hpp"
 #include "cambium/map/building/detail/polyline_profiles.hpp"
 #include "cambium/map/building/polyline_roads.hpp"
-#include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/detail/read_map_file.hpp"
-#include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/road/lane_type.hpp"
 
 namespace cambium::map {

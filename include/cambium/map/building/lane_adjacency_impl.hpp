@@ -1,14 +1,10 @@
 #pragma once
 
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "cambium/core/macros.hpp"
 #include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/building/lane_adjacency.hpp"
-#include "cambium/map/opendrive/document.hpp"
-#include "cambium/map/road/road.hpp"
 
 namespace cambium::map {
 

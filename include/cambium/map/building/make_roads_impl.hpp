@@ -1,21 +1,15 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/building/detail/make_road.hpp"
 #include "cambium/map/building/make_roads.hpp"
 #include "cambium/map/detail/id_places.hpp"
-#include "cambium/map/opendrive/document.hpp"
-#include "cambium/map/road/road.hpp"
 
 namespace cambium::map {
 
 CAMBIUM_COLD std::vector<Road> make_roads(OpenDriveDocument const& document) {
-  detail::IdPlaces junctions;
-  for (std::size_t i = 0; i < document.junctions.size(); ++i) junctions.emplace(document.junctions[i].id, i);
+  auto const junctions = detail::places_of(document.junctions);
   std::vector<Road> roads;
   roads.reserve(document.roads.size());
   for (auto const& source : document.roads) {

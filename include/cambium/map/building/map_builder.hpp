@@ -32,19 +32,19 @@ struct TurnPlan {
 ///     builder.add_road({.id = "1", .line = lay_from({}, {{500.0}}), .sections = {{.right = equal_lanes(2)}}});
 ///     auto const map = builder.build();
 ///
-/// All functions throw `MapError` for roads and junctions that are not there, and for numbers that are not finite; what
-/// throws has changed nothing.
+/// All functions throw `MapError` for roads and junctions that are not there, and for numbers that are not finite; a
+/// call that throws changes nothing.
 class MapBuilder {
  public:
   explicit MapBuilder(std::string name = "map");
 
-  /// Adds a road; gives its id. Throws `MapError` where the id is taken or says none, the line or the first section is
-  /// missing, a geometry does not begin where the previous one ends (to 1 cm and 0.01 rad), sections or records are not
-  /// in order, or a width falls below 0. Linear in the plan.
+  /// Adds a road and returns its id. Throws `MapError` where the id is taken or says none, the line or the first
+  /// section is missing, a geometry does not begin where the previous one ends (to 1 cm and 0.01 rad), sections or
+  /// records are not in order, or a width falls below 0. Linear in the plan.
   std::string add_road(RoadPlan plan);
 
-  /// Adds an empty junction; gives its id (without one, the next free number). Throws `MapError` where the id is taken
-  /// or says none.
+  /// Adds an empty junction and returns its id (without one, the next free number). Throws `MapError` where the id is
+  /// taken or says none.
   std::string add_junction(std::string id = {}, std::string name = {});
 
   /// The end of a road's reference line, looking away from the road: where another road can begin.

@@ -2,28 +2,18 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/geometry/pose.hpp"
 #include "cambium/map/building/build_map.hpp"
-#include "cambium/map/building/detail/document_index.hpp"
 #include "cambium/map/building/detail/road_connector.hpp"
 #include "cambium/map/building/detail/road_maker.hpp"
 #include "cambium/map/building/detail/rollback.hpp"
 #include "cambium/map/building/map_builder.hpp"
-#include "cambium/map/building/road_plan.hpp"
-#include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/check.hpp"
-#include "cambium/map/opendrive/document.hpp"
-#include "cambium/map/road/curve_layout.hpp"
 
 namespace cambium::map {
 

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "cambium/core/error.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/lanes/lane.hpp"

@@ -3,19 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/line.hpp"
-#include "cambium/geometry/pose.hpp"
 #include "cambium/map/building/detail/polyline_profiles.hpp"
 #include "cambium/map/building/polyline_roads.hpp"
-#include "cambium/map/building/road_plan.hpp"
-#include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 
 /// Roads from points, for planners that bring lanes of their own.

@@ -55,17 +55,22 @@ struct RoadEnd {
 };
 
 /// `count` lanes of equal width [m].
-[[nodiscard]] std::vector<LanePlan> equal_lanes(std::size_t count, double width = 3.5,
-                                                LaneType type = LaneType::driving);
+[[nodiscard]] inline std::vector<LanePlan> equal_lanes(std::size_t count, double width = 3.5,
+                                                       LaneType type = LaneType::driving) {
+  return std::vector<LanePlan>(count, LanePlan{.type = type, .width = width});
+}
 
 /// A white mark, 0.15 m wide where it is not "none".
-[[nodiscard]] opendrive::RoadMark make_mark(std::string type, opendrive::LaneChangePermission lane_change);
+[[nodiscard]] inline opendrive::RoadMark make_mark(std::string const& type,
+                                                   opendrive::LaneChangePermission lane_change) {
+  return {0.0, type, "white", type == "none" ? 0.0 : 0.15, lane_change, "standard"};
+}
 
 /// From `from` at station `s` to `to` `length` [m] further on, with slope 0 at both.
-[[nodiscard]] CubicRecord smooth_step(double s, double from, double to, double length);
+[[nodiscard]] inline CubicRecord smooth_step(double s, double from, double to, double length) {
+  double const rise = to - from;
+  if (rise == 0.0) return {s, from, 0.0, 0.0, 0.0};
+  return {s, from, 0.0, 3.0 * rise / (length * length), -2.0 * rise / (length * length * length)};
+}
 
 }  // namespace cambium::map
-
-#ifndef CAMBIUM_COMPILED
-#include "cambium/map/building/road_plan_impl.hpp"
-#endif

@@ -7,6 +7,7 @@
 
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanes/signals.hpp"
+#include "cambium/map/opendrive/element.hpp"
 #include "cambium/map/road/lane_type.hpp"
 
 /// Lanelets: the form in which Lanelet2 and CommonRoad describe roads. A lanelet is a piece of one lane between two
@@ -34,16 +35,9 @@ struct Lanelet {
   bool both_directions = false;         ///< driven either way
   bool in_junction = false;             ///< the file says that it lies in an intersection
   std::vector<LaneletSignal> signals{};
-  int line = 0;  ///< of the file, for messages; 0: unknown
+  opendrive::FileLine line{};  ///< for messages
 
-  /// Compares all but the line.
-  friend bool operator==(Lanelet const& a, Lanelet const& b) {
-    return a.id == b.id && a.left == b.left && a.right == b.right && a.predecessors == b.predecessors &&
-           a.successors == b.successors && a.left_neighbor == b.left_neighbor && a.right_neighbor == b.right_neighbor &&
-           a.may_change_left == b.may_change_left && a.may_change_right == b.may_change_right && a.type == b.type &&
-           a.speed_limit == b.speed_limit && a.both_directions == b.both_directions && a.in_junction == b.in_junction &&
-           a.signals == b.signals;
-  }
+  friend bool operator==(Lanelet const&, Lanelet const&) = default;
 };
 
 }  // namespace cambium::map

@@ -15,8 +15,8 @@
 
 namespace cambium::map {
 
-/// How the places of a Lanelet2 file become metres: by transverse Mercator in the UTM zone of the origin, which becomes
-/// (0, 0), as Lanelet2's UTM projector does. INTERACTION's maps have the origin (0, 0).
+/// Projection of a Lanelet2 file's coordinates to metres: transverse Mercator in the UTM zone of the origin, which
+/// becomes (0, 0), as by Lanelet2's UTM projector. INTERACTION's maps have the origin (0, 0).
 struct Lanelet2Origin {
   double latitude = 0.0;   ///< [degrees], north positive
   double longitude = 0.0;  ///< [degrees], east positive

@@ -6,16 +6,12 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 #include <pugixml.hpp>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
 #include "cambium/map/lanelet/detail/utm.hpp"
@@ -144,18 +140,24 @@ class Lanelet2Reader {
     return at_end != bound.reversed ? nodes.back() : nodes.front();
   }
 
+  /// Calls `visit(member, ref)` for each member of a relation in `role`.
+  template <class Visit>
+  void for_each_member(pugi::xml_node node, std::string_view role, Visit const& visit) {
+    for_each_child(node, "member", [&](pugi::xml_node member) {
+      if (member.attribute("role").value() != role) return;
+      if (auto const ref = context_.number<Id>(member, "ref")) visit(member, *ref);
+    });
+  }
+
   /// The way that a relation has in `role`: the first; further ones are reported.
   [[nodiscard]] std::optional<Id> bound_way(pugi::xml_node node, std::string_view role) {
     std::optional<Id> found;
-    for_each_child(node, "member", [&](pugi::xml_node member) {
-      if (member.attribute("role").value() != role) return;
-      auto const ref = context_.number<Id>(member, "ref");
-      if (!ref) return;
+    for_each_member(node, role, [&](pugi::xml_node member, Id ref) {
       if (found) return warn(member, "there is a second way in the role " + std::string(role) + "; it was left out");
-      auto const way = ways_.find(*ref);
+      auto const way = ways_.find(ref);
       if (way == ways_.end() || way->second.nodes.size() < 2)
-        return warn(member, "way " + std::to_string(*ref) + " is not there, or has fewer than two nodes");
-      found = *ref;
+        return warn(member, "way " + std::to_string(ref) + " is not there, or has fewer than two nodes");
+      found = ref;
     });
     return found;
   }
@@ -207,10 +209,7 @@ class Lanelet2Reader {
       if (!read.lanelet.speed_limit) warn(node, "speed_limit=" + std::string(limit) + " is no speed; it was left out");
     }
     set_bounds(read, *left, *right);
-    for_each_child(node, "member", [&](pugi::xml_node member) {
-      if (std::string_view(member.attribute("role").value()) != "regulatory_element") return;
-      if (auto const ref = context_.number<Id>(member, "ref")) read.rules.push_back(*ref);
-    });
+    for_each_member(node, "regulatory_element", [&](pugi::xml_node, Id ref) { read.rules.push_back(ref); });
     if (!places_.emplace(*id, lanelets_.size()).second)
       return warn(node, "lanelet " + std::to_string(*id) + " is there already; the second one was left out");
     lanelets_.push_back(std::move(read));
@@ -226,14 +225,7 @@ class Lanelet2Reader {
       r.reversed = true;
       std::reverse(b.begin(), b.end());
     }
-    double twice_area = 0.0;
-    auto ring = a;
-    ring.insert(ring.end(), b.rbegin(), b.rend());
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      auto const p = ring[i] - ring[0], q = ring[(i + 1) % ring.size()] - ring[0];
-      twice_area += p.x() * q.y() - q.x() * p.y();
-    }
-    if (twice_area > 0.0) {
+    if (twice_area_between(a, b) > 0.0) {
       l.reversed = !l.reversed;
       r.reversed = !r.reversed;
     }
@@ -262,11 +254,8 @@ class Lanelet2Reader {
   /// The lanelets that a regulatory element names in `role`.
   [[nodiscard]] std::vector<std::size_t> named(pugi::xml_node node, std::string_view role) {
     std::vector<std::size_t> found;
-    for_each_child(node, "member", [&](pugi::xml_node member) {
-      if (member.attribute("role").value() != role) return;
-      auto const ref = context_.number<Id>(member, "ref");
-      if (!ref) return;
-      if (auto const place = places_.find(*ref); place != places_.end()) found.push_back(place->second);
+    for_each_member(node, role, [&](pugi::xml_node, Id ref) {
+      if (auto const place = places_.find(ref); place != places_.end()) found.push_back(place->second);
     });
     return found;
   }
@@ -323,10 +312,8 @@ class Lanelet2Reader {
   /// The places of an element's stop lines: the middles of the ways in the role ref_line.
   [[nodiscard]] std::vector<Point> stop_lines(pugi::xml_node node) {
     std::vector<Point> lines;
-    for_each_child(node, "member", [&](pugi::xml_node member) {
-      if (std::string_view(member.attribute("role").value()) != "ref_line") return;
-      auto const ref = context_.number<Id>(member, "ref");
-      auto const way = ref ? ways_.find(*ref) : ways_.end();
+    for_each_member(node, "ref_line", [&](pugi::xml_node, Id ref) {
+      auto const way = ways_.find(ref);
       if (way == ways_.end() || way->second.nodes.empty()) return;
       lines.push_back(0.5 * (nodes_.at(way->second.nodes.front()) + nodes_.at(way->second.nodes.back())));
     });
@@ -336,10 +323,8 @@ class Lanelet2Reader {
   /// What a sign of the element says: its subtype is a country and a number of its catalogue, such as de205.
   [[nodiscard]] std::optional<SignalKind> sign_of(pugi::xml_node node) {
     std::optional<SignalKind> kind;
-    for_each_child(node, "member", [&](pugi::xml_node member) {
-      if (std::string_view(member.attribute("role").value()) != "refers") return;
-      auto const ref = context_.number<Id>(member, "ref");
-      auto const way = ref ? ways_.find(*ref) : ways_.end();
+    for_each_member(node, "refers", [&](pugi::xml_node, Id ref) {
+      auto const way = ways_.find(ref);
       if (way == ways_.end()) return;
       auto const& word = way->second.subtype;
       if (word == "de205" || word == "usR1-2") kind = SignalKind::give_way;

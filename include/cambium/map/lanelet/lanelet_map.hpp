@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
-#include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/map.hpp"

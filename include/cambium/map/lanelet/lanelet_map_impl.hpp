@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <map>
 #include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/line.hpp"
-#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/building/polyline_roads.hpp"
 #include "cambium/map/building/road_plan.hpp"
@@ -22,7 +17,6 @@
 #include "cambium/map/lanelet/detail/lanelet_groups.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/lanes/lane.hpp"
-#include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
 namespace cambium::map {

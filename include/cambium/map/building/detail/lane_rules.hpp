@@ -18,7 +18,7 @@
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-/// What a document says about driving in lanes: how fast, where to change them, signs and lights.
+/// What a document says about driving in lanes: speed limits, lane changes, signs and lights.
 namespace cambium::map::detail {
 
 /// The limit of the last of `records` that begins at or before `s` [m/s]; nothing where that one has none, or none
@@ -119,7 +119,8 @@ class LaneChangeMarks {
       auto const next = std::upper_bound(marks.begin(), marks.end(), s + 1e-9,
                                          [](double v, auto const& mark) { return v < mark.s_offset; });
       auto const change = next == marks.begin() ? LaneChangePermission::unspecified : (next - 1)->lane_change;
-      if (change == LaneChange::none || change == (to_higher ? LaneChange::decrease : LaneChange::increase))
+      if (change == LaneChangePermission::none ||
+          change == (to_higher ? LaneChangePermission::decrease : LaneChangePermission::increase))
         return false;
     }
     return true;
@@ -167,10 +168,7 @@ class LaneSignals {
         auto const signal = signals_.find(reference.id);
         if (signal != signals_.end()) add(*signal->second, reference, lane);
       }
-      auto const order = [](LaneSignal const& a, LaneSignal const& b) {
-        return std::tie(a.s, a.kind, a.light) < std::tie(b.s, b.kind, b.light);
-      };
-      cambium::detail::stable_sort_by(lane.signals, order);
+      cambium::detail::stable_sort(lane.signals, [](LaneSignal const& s) { return std::tuple(s.s, s.kind, s.light); });
       lane.signals.erase(std::unique(lane.signals.begin(), lane.signals.end()), lane.signals.end());
     }
     return std::move(lights_);

@@ -40,7 +40,8 @@ inline void set_surface(opendrive::RoadElement const& source, Road& road) {
           std::move(heights)};
 }
 
-[[nodiscard]] inline Road make_road(opendrive::RoadElement const& source, RoadId id, opendrive::HeaderOffset const& offset) {
+[[nodiscard]] inline Road make_road(opendrive::RoadElement const& source, RoadId id,
+                                    opendrive::HeaderOffset const& offset) {
   Road road;
   road.id = id;
   road.name = source.id;

@@ -37,9 +37,11 @@ namespace detail {
 
 using opendrive::ContactPoint;
 
+[[nodiscard]] inline std::string describe(RoadEnd const& end) {
+  return "road " + end.road + ", " + (end.end == ContactPoint::end ? "end" : "start");
+}
 [[nodiscard]] inline std::string describe(RoadEnd const& end, int lane) {
-  return "road " + end.road + ", " + (end.end == ContactPoint::end ? "end" : "start") + ", lane " +
-         std::to_string(lane);
+  return describe(end) + ", lane " + std::to_string(lane);
 }
 
 /// The lane section at a road's end.
@@ -49,14 +51,16 @@ using opendrive::ContactPoint;
 
 [[nodiscard]] inline auto& find_lane(auto& road, ContactPoint end, int id) {
   auto& lanes = section_at(road, end).lanes;
-  auto const found = std::find_if(lanes.begin(), lanes.end(), [id](opendrive::LaneElement const& l) { return l.id == id; });
+  auto const found =
+      std::find_if(lanes.begin(), lanes.end(), [id](opendrive::LaneElement const& l) { return l.id == id; });
   if (id == 0 || found == lanes.end())
     throw MapError(describe({road.id, end}, id), "there is no such lane", "name one that it has");
   return *found;
 }
 
 /// True when traffic in the lane leaves the road at that end.
-[[nodiscard]] inline bool leaves(opendrive::RoadElement const& road, ContactPoint end, opendrive::LaneElement const& lane) {
+[[nodiscard]] inline bool leaves(opendrive::RoadElement const& road, ContactPoint end,
+                                 opendrive::LaneElement const& lane) {
   bool const along = ((lane.id < 0) != (road.rule == opendrive::DrivingSide::left_hand)) !=
                      (lane.direction == opendrive::LaneDirection::reversed);
   return along == (end == ContactPoint::end);
@@ -92,7 +96,8 @@ struct LaneSpan {
 
 /// The lanes that go on as each other where two road ends meet.
 [[nodiscard]] inline std::vector<opendrive::LaneLink> facing_lanes(opendrive::RoadElement const& a, ContactPoint end_a,
-                                                                   opendrive::RoadElement const& b, ContactPoint end_b) {
+                                                                   opendrive::RoadElement const& b,
+                                                                   ContactPoint end_b) {
   std::vector<opendrive::LaneLink> links;
   for (auto const& lane : section_at(a, end_a).lanes) {
     int const there = end_a != end_b ? lane.id : -lane.id;
@@ -104,8 +109,9 @@ struct LaneSpan {
 }
 
 /// The lanes of a turn, see `TurnPlan::lanes`.
-[[nodiscard]] inline std::vector<opendrive::LaneLink> turn_lanes(opendrive::RoadElement const& a, opendrive::RoadElement const& b,
-                                                                 RoadEnd const& from, RoadEnd const& to,
+[[nodiscard]] inline std::vector<opendrive::LaneLink> turn_lanes(opendrive::RoadElement const& a,
+                                                                 opendrive::RoadElement const& b, RoadEnd const& from,
+                                                                 RoadEnd const& to,
                                                                  std::vector<opendrive::LaneLink> wanted) {
   for (auto const& link : wanted)
     if (!leaves(a, from.end, find_lane(a, from.end, link.from)) || leaves(b, to.end, find_lane(b, to.end, link.to)))
@@ -151,7 +157,9 @@ class RoadConnector {
     auto& l = find_lane(road(end), end.end, lane);
     return end.end == ContactPoint::end ? l.successors : l.predecessors;
   }
-  [[nodiscard]] opendrive::JunctionElement& junction(std::string const& id) const { return index_.junction(document_, id); }
+  [[nodiscard]] opendrive::JunctionElement& junction(std::string const& id) const {
+    return index_.junction(document_, id);
+  }
   [[nodiscard]] static opendrive::RoadLink to_road(RoadEnd const& end) {
     opendrive::RoadLink link;
     link.id = end.road;
@@ -185,8 +193,7 @@ class RoadConnector {
   void link_to_junction(RoadEnd const& end, std::string const& id) const {
     auto& link = link_of(end);
     if (link && (link->element_type != opendrive::ElementType::junction || link->id != id))
-      throw MapError("road " + end.road + ", " + (end.end == ContactPoint::end ? "end" : "start"),
-                     "it is linked to another road or junction", "connect each end to one junction");
+      throw MapError(describe(end), "it is linked to another road or junction", "connect each end to one junction");
     link.emplace();
     link->element_type = opendrive::ElementType::junction;
     link->id = id;
@@ -204,7 +211,8 @@ class RoadConnector {
   }
 
   /// A connection for those of the lanes that lead from `incoming` onto `way`, where one of them is drivable.
-  void add_connection(opendrive::JunctionElement& at, RoadEnd const& incoming, RoadEnd const& way, Links const& links) const {
+  void add_connection(opendrive::JunctionElement& at, RoadEnd const& incoming, RoadEnd const& way,
+                      Links const& links) const {
     opendrive::Connection connection;
     bool const is_direct = at.type == opendrive::JunctionType::direct;
     connection.incoming_road = incoming.road;

@@ -36,9 +36,8 @@ class RoadLinks {
  public:
   using ContactPoint = opendrive::ContactPoint;
 
-  RoadLinks(OpenDriveDocument const& document, std::vector<Road> const& roads) : document_(document), roads_(roads) {
-    for (std::size_t i = 0; i < document.roads.size(); ++i) index_.emplace(document.roads[i].id, i);
-  }
+  RoadLinks(OpenDriveDocument const& document, std::vector<Road> const& roads)
+      : document_(document), roads_(roads), index_(places_of(document.roads)) {}
 
   [[nodiscard]] OpenDriveDocument const& document() const { return document_; }
   [[nodiscard]] std::vector<Road> const& roads() const { return roads_; }
@@ -96,8 +95,8 @@ class RoadLinks {
   /// The end of a connection's incoming road that touches the junction; where both do, the one that the entered road
   /// names at its `entry`, else the one nearer to that. In a virtual junction the place in the middle of the road that
   /// the entered road names. None where the incoming road is not there, or meets the junction nowhere.
-  [[nodiscard]] SectionEnds exits_of(opendrive::JunctionElement const& junction, opendrive::Connection const& connection,
-                                     SectionEnd const& entry) const {
+  [[nodiscard]] SectionEnds exits_of(opendrive::JunctionElement const& junction,
+                                     opendrive::Connection const& connection, SectionEnd const& entry) const {
     auto const incoming = find(connection.incoming_road);
     if (!incoming) return {};
     auto const touches = [&](ContactPoint end) {

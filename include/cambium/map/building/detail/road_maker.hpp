@@ -118,7 +118,8 @@ class RoadMaker {
     road_.lane_sections.push_back(std::move(result));
   }
 
-  [[nodiscard]] opendrive::LaneElement lane(std::vector<LanePlan> const& side, std::size_t i, int sign, double length) const {
+  [[nodiscard]] opendrive::LaneElement lane(std::vector<LanePlan> const& side, std::size_t i, int sign,
+                                            double length) const {
     auto const& plan = side[i];
     check_limit(plan.speed_limit);
     double const end_width = plan.end_width.value_or(plan.width);

@@ -11,7 +11,7 @@
 namespace cambium::map::detail {
 
 /// Puts a document back as it was when this was made, unless `keep` is called: for changes that fail half way. Roads
-/// and junctions may be added; of those there are only what is watched may change.
+/// and junctions may be added; existing ones may change only if they are watched.
 class Rollback {
  public:
   Rollback(opendrive::Document& document, DocumentIndex const& index)

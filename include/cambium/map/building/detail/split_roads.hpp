@@ -49,8 +49,7 @@ inline void split_roads(OpenDriveDocument& document) {
         places.emplace_back(road.id, 0.5 * (road.lane_sections.front().s + road.geometry_length()));
     }
   if (places.empty()) return;
-  IdPlaces index;
-  for (std::size_t i = 0; i < document.roads.size(); ++i) index.emplace(document.roads[i].id, i);
+  auto const index = places_of(document.roads);
   for (auto const& [id, s] : places)
     if (auto const at = index.find(id); at != index.end()) split_section(document.roads[at->second], s);
 }

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/lanes/lane.hpp"
@@ -59,6 +59,13 @@ struct Rail {
   return result;
 }
 
+/// Twice the area of the ring along the left bound and back along the right one [m^2]: negative, for it runs clockwise,
+/// where the bounds lie on their sides.
+[[nodiscard]] inline double twice_area_between(std::vector<Point> ring, std::span<Point const> right) {
+  ring.insert(ring.end(), right.rbegin(), right.rend());
+  return geometry::twice_area(ring);
+}
+
 /// Why bounds cannot be used; null where they can. Bounds that lie on the wrong sides are exchanged, which `swapped`
 /// reports.
 [[nodiscard]] inline char const* fault_of_bounds(Lanelet& lanelet, bool& swapped) {
@@ -68,14 +75,7 @@ struct Rail {
       if (!(std::abs(p.x()) <= farthest && std::abs(p.y()) <= farthest)) return "a point is no finite place in metres";
     if (evened(*bound).size() < 2) return "a bound has fewer than two points that are a centimetre apart";
   }
-  Rail const left(lanelet.left), right(lanelet.right);
-  double twice_area = 0.0;  // of the ring along the left bound and back along the right one: clockwise is right
-  std::vector<Point> ring = left.points;
-  ring.insert(ring.end(), right.points.rbegin(), right.points.rend());
-  for (std::size_t i = 0; i < ring.size(); ++i) {
-    auto const p = ring[i] - ring[0], q = ring[(i + 1) % ring.size()] - ring[0];
-    twice_area += p.x() * q.y() - q.x() * p.y();
-  }
+  double const twice_area = twice_area_between(lanelet.left, lanelet.right);
   if (!(std::abs(twice_area) > 0.02)) return "there is no room between its bounds";
   swapped = twice_area > 0.0;
   if (swapped) std::swap(lanelet.left, lanelet.right);

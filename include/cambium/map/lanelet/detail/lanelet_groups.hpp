@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -150,25 +149,24 @@ class LaneletGroups {
   /// Both sides name each other, or one does and the other names nobody; and they lie side by side.
   void find_neighbors() {
     right_of_.assign(lanelets.size(), nobody);
-    std::vector<bool> has_left(lanelets.size());
+    has_left_.assign(lanelets.size(), false);
     auto const pair = [&](std::size_t left, std::size_t right, std::size_t by, std::int64_t id) {
       if (left == nobody || right == nobody)
         return report(Severity::warning, by, "its neighbour " + std::to_string(id) + " is not there");
       if (left == right || right_of_[left] == right) return;
-      if (right_of_[left] != nobody || has_left[right])
+      if (right_of_[left] != nobody || has_left_[right])
         return report(Severity::warning, by, "its neighbour " + std::to_string(id) + " has another one on that side");
       if (!is_beside(lanelets[left], lanelets[right]))
         return report(Severity::info, by,
                       "its neighbour " + std::to_string(id) +
                           " does not lie beside it from begin to end; nobody changes lanes between them");
       right_of_[left] = right;
-      has_left[right] = true;
+      has_left_[right] = true;
     };
     for (std::size_t i = 0; i < lanelets.size(); ++i) {
       if (auto const id = lanelets[i].right_neighbor) pair(i, find(*id), i, *id);
       if (auto const id = lanelets[i].left_neighbor) pair(find(*id), i, i, *id);
     }
-    has_left_ = std::move(has_left);
   }
 
   [[nodiscard]] static bool is_beside(Lanelet const& left, Lanelet const& right) {
@@ -192,18 +190,12 @@ class LaneletGroups {
       if (group_of[i] == nobody) begin(i);  // a ring of neighbours
   }
 
-  [[nodiscard]] geometry::Box box_of(std::size_t lanelet) const {
-    geometry::Box box;
-    for (auto const& p : centers[lanelet].points) box.add(p.x(), p.y());
-    return box;
-  }
-
   /// Groups that cross each other lie in a junction, and so do those that leave or enter the same road beside them.
   void find_junctions() {
     DisjointSets sets(groups.size());
     std::vector<bool> inside(groups.size());
     std::vector<geometry::Box> boxes;
-    for (std::size_t i = 0; i < lanelets.size(); ++i) boxes.push_back(box_of(i));
+    for (auto const& center : centers) boxes.push_back(geometry::box_around(center.points));
     for (std::size_t i = 0; i < lanelets.size(); ++i) {
       if (!is_drivable(lanelets[i].type)) continue;
       if (lanelets[i].in_junction) inside[group_of[i]] = true;
