@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -201,9 +200,6 @@ struct LaneCorridor {
     return std::numeric_limits<double>::infinity();
   }
 
-  /// The type of the lane at `s`. O(log pieces).
-  [[nodiscard]] LaneType type_at(double s) const { return piece_at(s).type; }
-
   /// Distances from the centre line to the lane's borders at `s` [m]. O(log n).
   [[nodiscard]] SideWidths widths_at(double s) const { return widths_at(s, center.find(s)); }
 
@@ -215,10 +211,7 @@ struct LaneCorridor {
 
   /// Distances from the centre line to the lane's borders at `s` within `segment` of the centre line [m].
   [[nodiscard]] SideWidths widths_at(double s, std::uint32_t segment) const {
-    auto const& g = center.segments()[segment];
-    double const u = std::clamp((s - g.s) / g.length, 0.0, 1.0);
-    auto const &a = widths[segment], &b = widths[segment + 1];
-    return {a.left + u * (b.left - a.left), a.right + u * (b.right - a.right)};
+    return interpolated(widths, center, s, segment);
   }
 };
 
@@ -226,7 +219,7 @@ struct LaneCorridor {
 struct RoadCorridor {
   std::vector<LaneId> route;  ///< the lanes from start to destination, lane changes included
   IdVector<LaneCorridor, CorridorId> corridors;
-  CorridorId main{};  ///< the corridor that holds the route's last lane
+  CorridorId main{};                 ///< the corridor that holds the route's last lane
   std::vector<geometry::Point> way;  ///< of a free corridor: the points that it was built through
   double view{};                     ///< likewise: `FreeCorridorOptions::view` [m]
 
@@ -239,13 +232,6 @@ struct RoadCorridor {
       ++number;
     }
     return none<CorridorId>;
-  }
-
-  /// Number of the corridor left (right) of number `corridor` at `s` [m], `none<CorridorId>` where there is none. O(log
-  /// pieces).
-  [[nodiscard]] CorridorId left_of(CorridorId corridor, double s) const { return corridors[corridor].piece_at(s).left; }
-  [[nodiscard]] CorridorId right_of(CorridorId corridor, double s) const {
-    return corridors[corridor].piece_at(s).right;
   }
 
   /// All lanes, by id, each once. O(n log n).

@@ -10,7 +10,7 @@
 
 namespace cambium::map {
 
-/// What a free corridor is like.
+/// Properties of a free corridor.
 struct FreeCorridorOptions {
   double width = 2.0;                 ///< half of it to either side of the points [m]
   LaneType type = LaneType::walking;  ///< what it is for
@@ -20,8 +20,8 @@ struct FreeCorridorOptions {
 };
 
 /// A way through `points` [m], its corners rounded, that belongs to no lane, as a road corridor of one lane corridor:
-/// for those on foot or on wheels who go beside the lanes and across. Its `crossings` are the drivable lanes that it
-/// crosses, whose traffic goes first; a way along a lane is one long crossing of it. Bridges count as level. Worlds
+/// for pedestrians and cyclists who move beside the lanes and across them. Its `crossings` are the drivable lanes that
+/// it crosses, whose traffic goes first; a way along a lane is one long crossing of it. Bridges count as level. Worlds
 /// take it in `AgentSpec::road`; give agents on one way the same corridor, so that they are neighbours on it. Throws
 /// `MapError` for fewer than two distinct points, numbers that are not finite, a length beyond 10 km, a width or
 /// view that is not positive, or a type of lane to drive on. O(length log lanes).

@@ -111,7 +111,7 @@ class StripPolygons {
   std::vector<geometry::Polygon> polygons_;
 };
 
-/// The cross-section of a strip at a vertex of its line. Widths of nothing, or less, count as 2 mm.
+/// The cross-section of a strip at a vertex of its line. Widths of 0 or less count as 2 mm.
 [[nodiscard]] inline StripSection strip_section(geometry::Pose const& on_line, SideWidths sides, double growth) {
   constexpr double least = 1e-3;
   double const middle = 0.5 * (sides.left - sides.right);
@@ -122,10 +122,9 @@ class StripPolygons {
 }
 
 /// The ground of a strip along `line` with `widths` at its vertices, from `begin` to `end`.
-template <class WidthsAt>
-[[nodiscard]] std::vector<StripSection> strip_sections(geometry::Line const& line, std::span<SideWidths const> widths,
-                                                       WidthsAt const& widths_at, PathStretch const& stretch,
-                                                       double growth) {
+[[nodiscard]] inline std::vector<StripSection> strip_sections(geometry::Line const& line,
+                                                              std::span<SideWidths const> widths,
+                                                              PathStretch const& stretch, double growth) {
   if (std::isnan(stretch.begin) || std::isnan(stretch.end))
     throw MapError("lane area", "its begin or end is not a number", "give metres along it");
   if (!std::isfinite(growth)) throw MapError("lane area", "its growth is no finite number", "give metres");
@@ -133,13 +132,13 @@ template <class WidthsAt>
                end = std::clamp(stretch.end, begin, line.length());
   std::vector<StripSection> sections;
   if (!(end > begin)) return sections;
-  sections.push_back(strip_section(line.pose(begin), widths_at(begin), growth));
+  sections.push_back(strip_section(line.pose(begin), interpolated(widths, line, begin, line.find(begin)), growth));
   auto const segments = line.segments();
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (!(segments[i].s > begin && segments[i].s < end)) continue;
     sections.push_back(strip_section({segments[i].x, segments[i].y, segments[i].heading}, widths[i], growth));
   }
-  sections.push_back(strip_section(line.pose(end), widths_at(end), growth));
+  sections.push_back(strip_section(line.pose(end), interpolated(widths, line, end, line.find(end)), growth));
   return sections;
 }
 
@@ -159,16 +158,14 @@ inline constexpr PathStretch whole_path{0.0, std::numeric_limits<double>::infini
 /// that is not a number and a growth that is not finite. O(n^2) for n vertices, a few ns a pair.
 [[nodiscard]] inline std::vector<geometry::Polygon> area_of(Lane const& lane, PathStretch stretch = detail::whole_path,
                                                             double growth = 0.0) {
-  auto const widths = [&lane](double s) { return lane.widths_at(s); };
-  return detail::strip_polygons(detail::strip_sections(lane.path, lane.widths, widths, stretch, growth));
+  return detail::strip_polygons(detail::strip_sections(lane.path, lane.widths, stretch, growth));
 }
 
 /// As above, of a lane corridor: its lanes' ground merged.
 [[nodiscard]] inline std::vector<geometry::Polygon> area_of(LaneCorridor const& corridor,
                                                             PathStretch stretch = detail::whole_path,
                                                             double growth = 0.0) {
-  auto const widths = [&corridor](double s) { return corridor.widths_at(s); };
-  return detail::strip_polygons(detail::strip_sections(corridor.center, corridor.widths, widths, stretch, growth));
+  return detail::strip_polygons(detail::strip_sections(corridor.center, corridor.widths, stretch, growth));
 }
 
 }  // namespace cambium::map

@@ -1,12 +1,9 @@
 #pragma once
 
 #include <utility>
-#include <vector>
 
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/polygon.hpp"
-#include "cambium/geometry/polygon_union.hpp"
-#include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/corridor/lane_area.hpp"
 #include "cambium/map/corridor/road_area.hpp"
 

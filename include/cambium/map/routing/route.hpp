@@ -26,13 +26,13 @@ struct Route {
   }
 };
 
-/// What makes one route better than another.
+/// What a route search minimises.
 enum class RouteCost : std::uint8_t {
   length,  ///< [m]
   time,    ///< [s] at the speed limit
 };
 
-/// What routes are searched with.
+/// Options of a route search.
 struct RouteOptions {
   RouteCost cost = RouteCost::length;
   /// Cost of driving a whole lane, instead of `cost`; not negative, infinite closes the lane. Called once a lane and

@@ -10,8 +10,8 @@
 
 namespace cambium::map::detail {
 
-/// The bends of a corridor's centre line. Curvature is measured over 4 m, for files' kinks are no bends that anybody
-/// drives; one stretch goes on while it is within a tenth of its sharpest.
+/// The bends of a corridor's centre line. Curvature is averaged over 4 m, so kinks in the file are not bends. A bend
+/// ends where its curvature falls more than a tenth below its sharpest.
 [[nodiscard]] inline std::vector<Bend> bends_of(geometry::Line const& center) {
   constexpr double step = 1.0, half = 2.0, least = 1e-3;  // [m], [m], [1/m]
   std::vector<Bend> bends;

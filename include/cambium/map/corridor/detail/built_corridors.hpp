@@ -30,7 +30,7 @@ class BuiltCorridors {
  public:
   using Shared = std::shared_ptr<RoadCorridor const>;
 
-  /// Whenever `unused_bytes` [B] of new ones have come, as much is kept of those that are not in use.
+  /// After every `unused_bytes` [B] of new corridors, those not in use are dropped, oldest first, down to that total.
   explicit BuiltCorridors(std::size_t unused_bytes = 8u << 20) : unused_bytes_(unused_bytes) {}
 
   /// The one along `route`; null if there is none.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -226,8 +225,7 @@ class ConflictFinder {
     return chain;
   }
 
-  /// Makes zones of two roads' lanes one where `add_zone` would, over the borders of lane sections. Both corridors come
-  /// to the same zones so.
+  /// Merges zones across lane-section borders, so both corridors agree.
   void unite(std::vector<Found>& found) const {
     struct Member {
       Conflict* conflict;
@@ -274,12 +272,10 @@ class ConflictFinder {
   }
 
   static void sort(std::vector<Conflict>& conflicts) {
-    auto const key = [](Conflict const& c) {
+    cambium::detail::stable_sort(conflicts, [](Conflict const& c) {
       return std::tuple(c.hold[1][1], c.hull().begin, c.other, c.hull().other_begin, c.lane_end, c.zones[0][0].begin,
                         c.zones[0][1].begin, c.zones[1][0].begin);
-    };
-    cambium::detail::stable_sort_by(conflicts,
-                                    [&key](Conflict const& a, Conflict const& b) { return key(a) < key(b); });
+    });
     double end = -std::numeric_limits<double>::infinity();
     for (auto& conflict : conflicts) conflict.farthest_end = end = std::max(end, conflict.hull().end);
   }

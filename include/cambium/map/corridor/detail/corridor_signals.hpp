@@ -32,10 +32,7 @@ namespace cambium::map::detail {
       double const position = std::clamp(signal.s - pieces[i].lane_offset, pieces[i].begin, pieces[i].end);
       signals.push_back({line_of(i, position), signal.kind, signal.light});
     }
-  auto const order = [](CorridorSignal const& a, CorridorSignal const& b) {
-    return std::tie(a.line, a.kind, a.light) < std::tie(b.line, b.kind, b.light);
-  };
-  cambium::detail::stable_sort_by(signals, order);
+  cambium::detail::stable_sort(signals, [](CorridorSignal const& s) { return std::tuple(s.line, s.kind, s.light); });
   signals.erase(std::unique(signals.begin(), signals.end()), signals.end());
   return signals;
 }

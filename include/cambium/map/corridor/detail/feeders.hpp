@@ -50,9 +50,8 @@ class FeederFinder {
           add_upstream_of(overlap, position(piece, overlap.begin));
     }
     if (corridor_.continues) add_successors(front_view);
-    cambium::detail::stable_sort_by(corridor_.feeders, [](Feeder const& a, Feeder const& b) {
-      return std::tie(a.begin, a.lane, a.index_begin) < std::tie(b.begin, b.lane, b.index_begin);
-    });
+    cambium::detail::stable_sort(corridor_.feeders,
+                                 [](Feeder const& f) { return std::tuple(f.begin, f.lane, f.index_begin); });
   }
 
  private:
@@ -106,8 +105,8 @@ class FeederFinder {
   }
 
   /// Calls `visit(lane, length, at)` for the lanes to which `links` lead from `lane`, and those farther along, up to
-  /// `view` [m]: `length` of each is in view, `at` the image of its near end; it returns that of its far end. One way
-  /// is followed to its end before the next; of a lane come to again no more than what is new, so that lanes linked
+  /// `view` [m]: `length` of each is in view, `at` the image of its near end; it returns that of its far end. Each way
+  /// is followed to its end before the next. A lane reached again contributes only its new part, so that lanes linked
   /// crosswise or in rings are not followed over and over.
   template <class Links, class Visit>
   void follow(LaneId lane, Links links, double view, double at, bool with_own, Visit const& visit) const {
@@ -145,8 +144,7 @@ class FeederFinder {
       if (other.lane == f.lane && other.index_begin < f.index_end - shortest &&
           other.index_end > f.index_begin + shortest)
         taken.push_back(other);
-    cambium::detail::stable_sort_by(taken,
-                                    [](Feeder const& a, Feeder const& b) { return a.index_begin < b.index_begin; });
+    cambium::detail::stable_sort(taken, &Feeder::index_begin);
     double from = f.index_begin;
     auto const add_part = [&](double to) {
       if (to - from > shortest)

@@ -193,7 +193,7 @@ class RoadListSearch {
   std::set<std::pair<double, Place>> open_;
 };
 
-// See the `build_road_corridor`s of find_corridor.hpp.
+// See the `build_road_corridor`s of build_corridor.hpp.
 
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> find_road_corridor(Map const& map, geometry::Pose const& start,
                                                                             geometry::Point const& goal,

@@ -23,9 +23,7 @@ namespace cambium::map::detail {
 /// `points`' convex hull as a polygon; nothing where it has no area.
 [[nodiscard]] inline std::optional<geometry::Polygon> hull_polygon(std::vector<geometry::Point> points) {
   auto const hull = geometry::convex_hull(std::move(points));
-  double twice = 0.0;
-  for (std::size_t i = 1; i + 1 < hull.size(); ++i) twice += geometry::turn(hull[0], hull[i], hull[i + 1]);
-  if (!(twice > 1e-8)) return std::nullopt;
+  if (!(geometry::twice_area(hull) > 1e-8)) return std::nullopt;
   return geometry::Polygon(hull, "convex hull");
 }
 
@@ -37,15 +35,13 @@ struct GroundPiece {
 
 /// The ground of a lane on a stretch of its path: a convex piece between each two cross-sections.
 [[nodiscard]] inline std::vector<GroundPiece> ground_pieces(Lane const& lane, PathStretch const& stretch) {
-  auto const widths = [&lane](double s) { return lane.widths_at(s); };
-  auto const sections = strip_sections(lane.path, lane.widths, widths, stretch, 0.0);
+  auto const sections = strip_sections(lane.path, lane.widths, stretch, 0.0);
   std::vector<GroundPiece> pieces;
   for (std::size_t i = 0; i + 1 < sections.size(); ++i) {
     auto const &a = sections[i], &b = sections[i + 1];
     auto corners = geometry::convex_hull({a.left, a.right, b.left, b.right});
     if (corners.size() < 3) continue;
-    geometry::Box box;
-    for (auto const& p : corners) box.add(p.x(), p.y());
+    auto const box = geometry::box_around(corners);
     pieces.push_back({std::move(corners), box});
   }
   return pieces;

@@ -22,7 +22,7 @@
 namespace cambium::map::detail {
 
 /// The way through `points` with arcs of `radius` [m] at its corners, or smaller ones where there is less room: at a
-/// sharp corner the border of the one side would stand in the way to the other.
+/// sharp corner, the border of one leg would block the other.
 [[nodiscard]] inline std::vector<geometry::Point> rounded_corners(geometry::Line const& way, double radius) {
   constexpr double slight = 0.2, step = 0.2;  // [rad]
   auto const segments = way.segments();
@@ -64,14 +64,14 @@ class CrossingFinder {
       map_.for_each_drivable_near(way.pose(s, cursor).position(), 0.0, [&](LaneHit const& hit) { pass(hit, s, step); });
     }
     for (auto& crossing : crossings_) finish(crossing, step, way.length());
-    cambium::detail::stable_sort_by(crossings_, [](LaneCrossing const& a, LaneCrossing const& b) {
-      return std::tie(a.begin, a.lane, a.lane_begin) < std::tie(b.begin, b.lane, b.lane_begin);
+    cambium::detail::stable_sort(crossings_, [](LaneCrossing const& crossing) {
+      return std::tuple(crossing.begin, crossing.lane, crossing.lane_begin);
     });
     return std::move(crossings_);
   }
 
  private:
-  /// The way is in a lane at `s`: still, or again.
+  /// Extends the crossing of the lane that holds the way at `s`, or begins one.
   void pass(LaneHit const& hit, double s, double step) {
     for (auto& crossing : crossings_) {
       if (crossing.lane != hit.lane || s - crossing.end > 2.0 * step) continue;

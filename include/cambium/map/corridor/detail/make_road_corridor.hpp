@@ -76,8 +76,7 @@ class LaneJoiner {
       starts_.back() = {lane.id, center_.size() - 1, center_.size() - 1, 0.0};
   }
 
-  /// Adds a vertex if the line goes on to it; not so where a lane that is shorter than the file's rounding begins
-  /// before the last one ends.
+  /// Adds a vertex if it lies ahead: a lane shorter than the file's rounding may begin before the last one ends.
   bool append(geometry::LineSample const& p, SideWidths const& widths) {
     if (!geometry::goes_on(center_.back(), p)) return false;
     center_.push_back(p);
@@ -85,8 +84,7 @@ class LaneJoiner {
     return true;
   }
 
-  /// Where the next lane does not begin just as the last one ends: how far in the corridor becomes the lane [m]. 0
-  /// where it does.
+  /// Length of the transition to a lane that does not join exactly [m]; else 0.
   [[nodiscard]] double bridge_length(Lane const& lane, geometry::LineSample const& begin) const {
     constexpr double tolerance = 1e-3;  // [m], [rad]
     auto const& end = center_.back();

@@ -22,7 +22,7 @@
 
 namespace cambium::map::detail {
 
-/// What a search may not use.
+/// Places and steps closed to a search.
 struct Closed {
   std::vector<bool> places;                                    ///< empty: none
   std::vector<std::pair<std::uint32_t, std::uint32_t>> steps;  ///< (from, to), each once: a few, all from one place
@@ -62,8 +62,7 @@ class LaneSearch {
     }
   }
 
-  /// Cost of coming to `place`: true where it is within the budget and not beyond the goal. Infinite where there is no
-  /// way.
+  /// Cost of reaching `place`: exact if it is within the budget and not beyond the goal; infinite if it is unreachable.
   [[nodiscard]] double cost(std::uint32_t place) const { return distance_[place]; }
 
   /// The places on the way from `start` to `place`, both included. There must be one.
@@ -196,9 +195,7 @@ class YenSearch {
     double const cost = own == builder.no_place ? search.cost(i) : std::min(search.cost(i), search.cost(own));
     if (cost <= budget && std::isfinite(cost)) reached.push_back({static_cast<LaneId>(i), cost});
   }
-  cambium::detail::stable_sort_by(reached, [](ReachedLane const& a, ReachedLane const& b) {
-    return std::tie(a.cost, a.lane) < std::tie(b.cost, b.lane);
-  });
+  cambium::detail::stable_sort(reached, [](ReachedLane const& r) { return std::tuple(r.cost, r.lane); });
   return reached;
 }
 

@@ -86,7 +86,7 @@ class RouteGraphBuilder {
  public:
   static constexpr std::uint32_t no_place = std::numeric_limits<std::uint32_t>::max();
 
-  /// `to`: no destination where it names no lane.
+  /// There is no destination if `to` names no lane.
   RouteGraphBuilder(std::span<Lane const> lanes, LaneStation from, LaneStation to, RouteOptions const& options)
       : lanes_(lanes), options_(options), costs_(lane_costs(lanes, options)) {
     start_ = station(from, "start", from_share_);
@@ -190,9 +190,7 @@ class RouteGraphBuilder {
 
   [[nodiscard]] LaneGraph finished() {
     auto& steps = graph_.steps;
-    cambium::detail::stable_sort_by(steps, [](LaneStep const& a, LaneStep const& b) {
-      return std::tie(a.from, a.to, a.cost, a.ahead) < std::tie(b.from, b.to, b.cost, b.ahead);
-    });
+    cambium::detail::stable_sort(steps, [](LaneStep const& s) { return std::tuple(s.from, s.to, s.cost, s.ahead); });
     auto const same = [](LaneStep const& a, LaneStep const& b) { return a.from == b.from && a.to == b.to; };
     steps.erase(std::unique(steps.begin(), steps.end(), same), steps.end());
     for (std::uint32_t place = 0, i = 0; place <= goal() + start_lanes_.size(); ++place) {
