@@ -95,20 +95,10 @@ TEST_CASE("a road has a handful of findings, however often it is at fault") {
   }
 }
 
-TEST_CASE("our own maps have no finding at all") {
-  for (auto const& path : corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps")) {
-    auto const loaded = cambium::load_opendrive(path.string());
-    CHECK_MESSAGE(loaded.diagnostics.empty(), to_string(loaded.diagnostics.front()));
-  }
-}
-
 // The same uses that the fuzzer makes of damaged maps.
 TEST_CASE("routes, corridors, junctions, look-ups and pictures work on our own maps and on maps of the corpus") {
-  auto files = corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
-  for (std::string const name :
-       {"DR_DEU_Merging_MT_v01_shifted", "fabriksgatan", "multi_intersections", "virtual_junction_priority"})
-    if (auto const file = corpus::find("opendrive/" + name + ".xodr")) files.push_back(*file);
-  for (auto const& file : files) {
+  for (auto const& file : corpus::some_maps(
+           {"DR_DEU_Merging_MT_v01_shifted", "fabriksgatan", "multi_intersections", "virtual_junction_priority"})) {
     CAPTURE(file.string());
     CHECK(map_use::first_failure(*cambium::load_opendrive(file.string()).map) == "");
   }

@@ -1,71 +1,19 @@
 #include "cambium/map/road/road.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <string>
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/opendrive.hpp"
-#include "../support/corpus.hpp"
-#include "../support/maps.hpp"
+#include "cambium/geometry/angle.hpp"
 
 namespace {
 
 namespace cb = cambium;
-using cb::map::LanePoint;
 using cb::map::Road;
 
 constexpr auto none = cb::none<cb::LaneId>;
 
 double angle_between(double a, double b) { return std::abs(cb::geometry::angle_difference(a, b)); }
-
-struct Comparison {
-  int rows = 0, unsampled = 0;
-  double position = 0.0, border = 0.0, heading = 0.0, width = 0.0, t = 0.0;
-  double sampled_border = 0.0;  ///< of lanes with a width
-};
-
-double distance(cb::geometry::Line const& line, cb::geometry::Point const& p) {
-  if (line.empty()) return INFINITY;
-  auto const foot = line.project(p);
-  return std::hypot(foot.lateral, std::max({-foot.s, foot.s - line.length(), 0.0}));
-}
-
-Comparison compare_with_oracle(std::filesystem::path const& file) {
-  Comparison result;
-  auto const map = cambium::load_opendrive(file.string()).map;
-  for (auto const& row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".csv"))) {
-    auto const number = [&row](std::size_t column) { return std::stod(row[column]); };
-    auto const p = lane_point(map->find_road(row[0]), number(1), std::stoi(row[2]));
-    CAPTURE(row[0]);
-    CAPTURE(row[1]);
-    CAPTURE(row[2]);
-    REQUIRE(p.has_value());
-    auto const off = [&](double t, std::size_t column) {
-      auto const at = offset_point(p->reference, {t, 0.0, 0.0});
-      return std::hypot(at.x - number(column), at.y - number(column + 1));
-    };
-    ++result.rows;
-    result.position = std::max(result.position, std::hypot(p->center.x - number(5), p->center.y - number(6)));
-    result.heading = std::max(result.heading, angle_between(p->center.heading, number(7)));
-    result.width = std::max(result.width, std::abs(p->width - number(8)));
-    result.t = std::max(result.t, std::abs(p->t - number(9)));
-    result.border = std::max({result.border, off(p->inner_t, 10), off(p->outer_t, 12)});
-    if (number(8) < 0.05) continue;  // no border to speak of, or a negative width, which counts as 0
-    try {
-      auto const& lane = map->lane(map->find_lane(row[0], number(1), std::stoi(row[2])));
-      for (std::size_t const column : {10, 12}) {
-        cb::geometry::Point const border(number(column), number(column + 1));
-        auto const away = std::min(distance(lane.left, border), distance(lane.right, border));
-        result.sampled_border = std::max(result.sampled_border, away);
-      }
-    } catch (cb::MapError const&) {
-      ++result.unsampled;
-    }
-  }
-  return result;
-}
 
 /// The largest differences between what `lane_point` says and numerical derivatives of its positions.
 struct Derivatives {
@@ -82,30 +30,6 @@ Derivatives compare_with_differences(Road const& road, double s, int number, dou
 }
 
 }  // namespace
-
-TEST_CASE(
-    "lane centres, borders, widths and headings agree with the oracle on every map of the corpus, borders of sampled "
-    "lanes to 1 cm") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
-  int rows = 0;
-  for (auto const& map : corpus::maps(*folder)) {
-    CAPTURE(map.stem().string());
-    auto const c = compare_with_oracle(map);
-    rows += c.rows;
-    MESSAGE(map.stem().string() << ": " << c.rows << " rows, largest difference: centre " << c.position << " m, border "
-                                << c.border << " m, heading " << c.heading << " rad, width " << c.width << " m, t "
-                                << c.t << " m, sampled border " << c.sampled_border << " m");
-    CHECK(c.position < 1e-6);
-    CHECK(c.border < 1e-6);
-    CHECK(c.heading < 1e-8);
-    CHECK(c.width < 1e-6);
-    CHECK(c.t < 1e-6);
-    CHECK(c.sampled_border < 0.01);
-    CHECK(c.unsampled <= 2);  // in lane sections shorter than a micrometre
-  }
-  CHECK(rows > 5500);
-}
 
 TEST_CASE("a lane's heading and curvature are the derivatives of its centre line") {
   // A clothoid with a lane that swells by a cubic: slope, its change, and the change of curvature all count.

@@ -111,9 +111,10 @@ TEST_CASE("in own maps geometries meet to a nanometre, and joined lanes in posit
     for (auto const& road : map->roads()) {
       auto const all = road.reference_line.geometries();
       for (std::size_t i = 1; i < all.size(); ++i) {
-        auto const end = evaluate(all[i - 1], all[i - 1].length);
-        CHECK(std::hypot(end.x - all[i].x, end.y - all[i].y) < 1e-9);
-        CHECK(std::abs(cb::geometry::angle_difference(end.heading, all[i].heading)) < 1e-9);
+        auto const end = evaluate(all[i - 1], all[i - 1].length), next = evaluate(all[i], 0.0);
+        CHECK(std::hypot(end.x - next.x, end.y - next.y) < 1e-9);
+        CHECK(std::abs(end.heading - next.heading) < 1e-12);
+        CHECK(std::abs(end.curvature - next.curvature) < 1e-12);
       }
     }
     for (auto const& lane : map->lanes())

@@ -9,8 +9,6 @@
 #include <doctest/doctest.h>
 
 #include "cambium/map/corridor/build_corridor.hpp"
-#include "cambium/map/opendrive.hpp"
-#include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "road_text.hpp"
 
@@ -19,49 +17,9 @@ using cb::geometry::Point;
 using cb::geometry::Pose;
 using cb::map::LaneHit;
 
-TEST_CASE("a point that only one road covers is found on that road, in that lane, on every map of the corpus") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
-  int all = 0;
-  for (auto const& file : corpus::maps(*folder)) {
-    CAPTURE(file.stem().string());
-    auto const map = cambium::load_opendrive(file.string()).map;
-    int rows = 0, narrow = 0;
-    double largest_s = 0.0, largest_t = 0.0;
-    for (auto const& row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".csv"))) {
-      auto const number = [&row](std::size_t column) { return std::stod(row[column]); };
-      if (row[23] != "1") continue;
-      auto const places = cb::map::road_places(*map, Point(number(5), number(6)));
-      CAPTURE(row[0]);
-      CAPTURE(row[1]);
-      CAPTURE(row[2]);
-      if (number(8) <= 0.5) {  // a neighbour's centre may be as near
-        ++narrow;
-        continue;
-      }
-      REQUIRE(!places.empty());
-      auto const& best = places.front();
-      CHECK(map->road(best.road).name == row[0]);
-      CHECK(best.number == std::stoi(row[2]));
-      CHECK(best.distance < 1e-6);
-      largest_s = std::max(largest_s, std::abs(best.s - number(1)));
-      largest_t = std::max(largest_t, std::abs(best.t - number(9)));
-      ++rows;
-    }
-    MESSAGE(file.stem().string() << ": " << rows << " rows (" << narrow
-                                 << " lanes of 0.5 m and less left out), largest "
-                                 << "difference in s " << largest_s << " m, in t " << largest_t << " m");
-    CHECK(largest_s < 2e-6);
-    CHECK(largest_t < 1e-6);
-    all += rows;
-  }
-  CHECK(all > 2000);
-}
-
 TEST_CASE("of two roads that cross, a point has a place on both, the nearer centre first") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
-  auto const map = cambium::load_opendrive((*folder / "Town04.xodr").string()).map;
+  auto const map = support::corpus_map("Town04.xodr");
+  if (!map) return;
   std::size_t several = 0, all = 0, exact_ones = 0;
   for (auto const& lane : map->lanes()) {
     auto const p = lane.path.pose(0.5 * lane.length()).position();
@@ -85,9 +43,8 @@ TEST_CASE("of two roads that cross, a point has a place on both, the nearer cent
 }
 
 TEST_CASE("something that is driven along its lanes is followed, and lost as little as it is found anew") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
-  auto const map = cambium::load_opendrive((*folder / "Town04.xodr").string()).map;
+  auto const map = support::corpus_map("Town04.xodr");
+  if (!map) return;
   std::mt19937 random(3);
   int steps = 0, same = 0;
   for (int k = 0; k < 50; ++k) {
@@ -112,10 +69,9 @@ TEST_CASE("something that is driven along its lanes is followed, and lost as lit
 }
 
 TEST_CASE("a station beside a lane's path position is right to the sampling's tolerance") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
   for (auto const* name : {"Town04.xodr", "positive18.xodr", "velodrome.xodr"}) {
-    auto const map = cambium::load_opendrive((*folder / name).string()).map;
+    auto const map = support::corpus_map(name);
+    if (!map) return;
     for (auto const& lane : map->lanes())
       for (double const u : {0.0, 0.13, 0.5, 0.77, 1.0}) {
         double const s = u * lane.length();

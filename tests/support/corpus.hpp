@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -55,6 +56,14 @@ inline std::vector<std::filesystem::path> all_maps() {
   auto files = maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
   if (auto const folder = find("opendrive"))
     for (auto& file : maps(*folder)) files.push_back(std::move(file));
+  return files;
+}
+
+/// The project's own maps, and of the corpus, where it is there, those of these names.
+inline std::vector<std::filesystem::path> some_maps(std::initializer_list<char const*> names) {
+  auto files = maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
+  for (auto const* name : names)
+    if (auto const file = find("opendrive/" + std::string(name) + ".xodr")) files.push_back(*file);
   return files;
 }
 

@@ -42,9 +42,9 @@ inline std::string name_of(pugi::xml_node node) {
   return path;
 }
 
-inline std::string text_of(pugi::xml_document const& xml) {
+inline std::string text_of(pugi::xml_node root) {
   std::ostringstream text;
-  xml.save(text, " ", pugi::format_raw);
+  root.print(text, " ", pugi::format_raw);
   return text.str();
 }
 
