@@ -1,5 +1,6 @@
 #include "cambium/map/building/lane_adjacency.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -8,11 +9,12 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/make_roads.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 
-#include "../support/corpus.hpp"
+#include "corpus_maps.hpp"
 #include "../support/maps.hpp"
 #include "road_text.hpp"
 
@@ -40,27 +42,101 @@ std::multiset<Row> rows_of(cb::map::OpenDriveDocument const& document) {
   return rows;
 }
 
+bool has(std::vector<cb::LaneId> const& ids, cb::LaneId id) {
+  return std::find(ids.begin(), ids.end(), id) != ids.end();
+}
+
+/// The lane of that number in a section; null where the map has none.
+cb::map::Lane const* find(cb::Map const& map, cb::map::RoadSection const& section, int number) {
+  for (auto const& lane : section.lanes)
+    if (lane.number == number && is_valid(lane.id)) return &map.lane(lane.id);
+  return nullptr;
+}
+
+/// The lane of that number at the end of a road; sections without length are passed by.
+cb::map::Lane const* find(cb::Map const& map, std::string const& road, odr::ContactPoint end, int number) {
+  auto sections = map.find_road(road).sections;
+  if (end == odr::ContactPoint::end) std::reverse(sections.begin(), sections.end());
+  for (auto const& section : sections)
+    if (section.end - section.begin >= 1e-6) return find(map, section, number);
+  return nullptr;
+}
+
+/// From a section to the next one, those without length between them passed by.
+bool is_within_road(cb::map::Lane const& lane, cb::map::Lane const& to) {
+  if (to.road != lane.road || to.along_road != lane.along_road) return false;
+  auto const &first = lane.along_road ? lane : to, &last = lane.along_road ? to : lane;
+  return first.section < last.section && last.road_begin - first.road_end < 1e-4;
+}
+
+/// Checks that lanes which meet are joined in the map, unless they are driven against each other; returns those.
+std::set<std::pair<cb::LaneId, cb::LaneId>> check_joined(cb::Map const& map,
+                                                         std::vector<cb::map::LaneAdjacency> const& links) {
+  std::set<std::pair<cb::LaneId, cb::LaneId>> joined;
+  for (auto const& link : links) {
+    auto const *a = find(map, link.road, link.end, link.lane),
+               *b = find(map, link.next_road, link.next_end, link.next_lane);
+    if (!a || !b) continue;  // without length
+    bool const leaves_a = a->along_road == (link.end == odr::ContactPoint::end);
+    if (leaves_a == (b->along_road == (link.next_end == odr::ContactPoint::end))) continue;
+    auto const &from = leaves_a ? *a : *b, &to = leaves_a ? *b : *a;
+    CHECK_MESSAGE((has(from.successors, to.id) && has(to.predecessors, from.id)), map.describe(from.id)
+                                                                                      << " -> " << map.describe(to.id));
+    joined.insert({from.id, to.id});
+  }
+  return joined;
+}
+
 }  // namespace
 
-TEST_CASE("the lanes that meet at the ends of roads are those of the links table on every map of the corpus") {
+TEST_CASE("the lanes that meet at the ends of roads are those of the links tables, in the document and in the map") {
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
   std::size_t all = 0;
   for (auto const& file : corpus::maps(*folder)) {
+    CAPTURE(file.stem().string());
     std::vector<cb::Diagnostic> diagnostics;
-    std::multiset<Row> ours, theirs;
-    for (auto const& row : rows_of(cambium::map::load_opendrive_document(file.string(), diagnostics))) ours.insert(row);
+    auto const document = cb::map::load_opendrive_document(file.string(), diagnostics);
+    std::multiset<Row> theirs;
     for (auto row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".links.csv"))) {
       if (row.size() < 7) continue;  // an empty line
       row.resize(7);                 // without the column that names the peers
       theirs.insert(row);
     }
-    MESSAGE(file.stem().string() << ": " << theirs.size() << " rows");
-    CAPTURE(file.stem().string());
-    CHECK(ours == theirs);
+    CHECK(rows_of(document) == theirs);
     all += theirs.size();
+    auto const map = cb::map::build_map(document, {}, "", diagnostics);
+    auto const joined = check_joined(*map, lane_adjacency(document, cb::map::make_roads(document)));
+    for (auto const& lane : map->lanes())
+      for (auto const next : lane.successors) {
+        bool const merges = is_valid(lane.merges_into) && has(map->lane(lane.merges_into).successors, next);
+        CHECK_MESSAGE((merges || is_within_road(lane, map->lane(next)) || joined.contains({lane.id, next})),
+                      map->describe(lane.id) << " -> " << map->describe(next));
+      }
   }
   CHECK(all == 2852);
+}
+
+TEST_CASE("lanes of one road are linked from section to section") {
+  int links = 0;
+  bool const is_there = for_each_corpus_map([&links](auto const& file, cb::Map const& map) {
+    std::vector<cb::Diagnostic> diagnostics;
+    auto const document = cb::map::load_opendrive_document(file.string(), diagnostics);
+    for (std::size_t r = 0; r < document.roads.size(); ++r) {
+      auto const& road = map.roads()[r];
+      if (road.sections.size() != document.roads[r].lane_sections.size()) continue;  // split: it closes upon itself
+      for (std::size_t k = 0; k + 1 < road.sections.size(); ++k)
+        for (auto const& lane : document.roads[r].lane_sections[k].lanes)
+          for (int const id : lane.successors) {
+            auto const *a = find(map, road.sections[k], lane.id), *b = find(map, road.sections[k + 1], id);
+            if (!a || !b) continue;
+            auto const &from = a->along_road ? *a : *b, &to = a->along_road ? *b : *a;
+            CHECK_MESSAGE((has(from.successors, to.id) || is_valid(from.merges_into)), map.describe(from.id));
+            ++links;
+          }
+    }
+  });
+  if (is_there) CHECK(links > 1000);
 }
 
 TEST_CASE("a road with both ends in one junction is left at the end that the road it leads into names, as in the map") {

@@ -84,7 +84,7 @@ TEST_CASE("a possible link is the nearest begin within reach, as a search over a
     for (auto const& lane : lanes) {
       NetworkFinding expected{NetworkFault::dead_end, lane.id};
       double best = 0.5;
-      auto const end = by_hand::end_of(lane);
+      auto const end = lane.path.end_pose();
       for (auto const& other : lanes) {
         auto const begin = other.path.pose(0.0);
         double const apart = (begin.position() - end.position()).norm();

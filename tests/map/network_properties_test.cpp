@@ -16,7 +16,6 @@
 #include "cambium/core/random.hpp"
 #include "cambium/map/building/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive/reader.hpp"
 
 #include "../support/corpus.hpp"
 #include "transformed_documents.hpp"
@@ -33,7 +32,7 @@ using MapPointer = std::shared_ptr<Map const>;
 
 OpenDriveDocument document_of(std::filesystem::path const& path) {
   std::vector<Diagnostic> diagnostics;
-  return cambium::map::read_opendrive_document(corpus::read(path), path.filename().string(), diagnostics);
+  return cambium::map::load_opendrive_document(path.string(), diagnostics);
 }
 
 MapPointer built(OpenDriveDocument const& document) {
