@@ -12,7 +12,6 @@
 #include "../support/map_use.hpp"
 #include "../support/maps.hpp"
 #include "cambium/map/building/map_builder.hpp"
-#include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/check.hpp"
 
 namespace {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor/lane_place.hpp"
 
 #include "../support/maps.hpp"

@@ -11,7 +11,6 @@
 #include "cambium/map/lanelet/detail/utm.hpp"
 #include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
-#include "cambium/map/lanes/junction.hpp"
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"

@@ -96,8 +96,12 @@ inline void put_beside(std::vector<Lane>& lanes, LaneId left, LaneId right) {
   lanes[index_of(right)].number = lanes[index_of(left)].number - 1;
 }
 
-/// The end of a lane's path.
-inline Pose end_of(Lane const& lane) { return lane.path.pose(lane.length()); }
+/// Distance of `p` from a line, its ends included.
+inline double distance(geometry::Line const& line, Point const& p) {
+  if (line.empty()) return INFINITY;
+  auto const foot = line.project(p);
+  return std::hypot(foot.lateral, std::max({-foot.s, foot.s - line.length(), 0.0}));
+}
 
 /// A map of the lanes, with their overlaps.
 inline std::shared_ptr<Map const> make_map(std::vector<Lane> lanes) {

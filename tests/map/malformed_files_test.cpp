@@ -200,11 +200,16 @@ struct Refused {
 };
 
 std::vector<Refused> const refused{
-    {"empty", "", "not well-formed XML"},
+    {"empty", "", "test.xodr:1: the file is not well-formed XML"},
     {"not XML", "road 1: 100 m", "not well-formed XML"},
     {"bytes", std::string("\0\xff\xfe\x01<\0", 6), "not well-formed XML"},
-    {"truncated XML", good_file.substr(0, good_file.size() / 2), "not well-formed XML"},
-    {"wrong root", "<osm><header/></osm>", "the root element is <osm>"},
+    {"truncated XML", good_file.substr(0, good_file.find("<lanes>")), "test.xodr:10: the file is not well-formed XML"},
+    {"wrong root", "<?xml version=\"1.0\"?>\n\n<osm/>", "test.xodr:3: the root element is <osm>"},
+    {"nothing but a road with an unknown curve",
+     "<OpenDRIVE>\n<road id='1' length='1'><planView><geometry s='0' x='0' y='0' hdg='0' "
+     "length='1'><bezier/></geometry>"
+     "</planView></road></OpenDRIVE>",
+     "no usable road (test.xodr:2: warning: <geometry> of road 1"},
     {"no roads", "<OpenDRIVE><header/></OpenDRIVE>", "no usable road"},
     {"nothing but a road without lanes",
      R"(<OpenDRIVE><header/><road id="1" length="5"><planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/>
@@ -283,11 +288,7 @@ TEST_CASE("a file beyond the limits is refused before it takes memory, with limi
 }
 
 TEST_CASE("a file with a fault at each element gives a bounded list of findings") {
-  std::string const road =
-      "<road id='0' length='10' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
-      "length='10'><line/></geometry></planView><lanes><laneSection s='0'><right><lane id='-1' "
-      "type='driving'><width sOffset='0' a='3' b='0' c='0' d='0'/></lane></right></laneSection>"
-      "</lanes></road>";
+  std::string const road = road_text::text_of(road_text::Road{.id = "0"});
   std::string text = "<OpenDRIVE>" + road;
   for (std::size_t i = 0; i <= cambium::map::most_diagnostics; ++i) text += "<road/>";
   auto const loaded = cambium::parse_opendrive(text + "</OpenDRIVE>");
@@ -334,10 +335,7 @@ TEST_CASE("of roads and junctions whose ids occur twice, however many, the first
   std::string roads, junctions;
   for (int const id : {1, 1, 2, 2, 3, 3, 3, 4}) {
     auto const number = std::to_string(id);
-    roads += "<road id='" + number +
-             "' length='10' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' length='10'><line/></geometry>"
-             "</planView><lanes><laneSection s='0'><right><lane id='-1' type='driving'><width sOffset='0' a='3' b='0' "
-             "c='0' d='0'/></lane></right></laneSection></lanes></road>";
+    roads += road_text::text_of(road_text::Road{.id = number});
     junctions += "<junction id='" + number + "'/>";
   }
   auto const loaded = cambium::parse_opendrive("<OpenDRIVE>" + roads + junctions + "</OpenDRIVE>");

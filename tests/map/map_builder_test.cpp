@@ -49,6 +49,12 @@ bool leads(Map const& map, LaneId from, LaneId to) {
   return there;
 }
 
+/// Checks that `run` throws a `MapError` that says `words`; "no error": that it throws none.
+void check_error(auto const& run, std::string const& words) {
+  auto const what = support::error_of(run);
+  CHECK_MESSAGE(what.find(words) != std::string::npos, what);
+}
+
 /// Lanes in a form that does not depend on ids, in order: for comparing maps. `mirror` -1: at the x axis, with left
 /// and right swapped.
 std::vector<std::vector<double>> contents(Map const& map, double mirror = 1.0) {
@@ -254,18 +260,14 @@ TEST_CASE("a plan that cannot be built is refused with a sentence") {
   builder.add_road(straight("1", {}, 100, 1, 1));
   builder.add_road(straight("2", {101, 0, 0}, 100, 1, 1));
   builder.add_junction("9");
-  CHECK(support::error_of([&] {
-          builder.connect({"1", end}, {"7", start});
-        }).starts_with("road 7: there is none of that id"));
-  CHECK(support::error_of([&] {
-          builder.connect({"1", end}, {"2", start});
-        }).find("they do not meet: there are 1 m") < std::string::npos);
-  CHECK(support::error_of([&] {
-          builder.connect({"1", end}, {"2", start}, {{-1, -2}});
-        }).starts_with("road 2, start, lane -2: there is no such lane"));
-  CHECK(support::error_of([&] {
-          builder.add_turn("9", {"1", end}, {"2", start}, {.lanes = {{1, -1}}});
-        }).find("the wrong way") < std::string::npos);
+  check_error([&] { builder.connect({"1", end}, {"7", start}); }, "road 7: there is none of that id");
+  check_error([&] { builder.connect({"1", end}, {"2", start}); }, "they do not meet: there are 1 m");
+  check_error(
+      [&] {
+        builder.connect({"1", end}, {"2", start}, {{-1, -2}});
+      },
+      "road 2, start, lane -2: there is no such lane");
+  check_error([&] { builder.add_turn("9", {"1", end}, {"2", start}, {.lanes = {{1, -1}}}); }, "the wrong way");
   CHECK_THROWS_AS(builder.connect({"1", ContactPoint::none}, {"2", start}), MapError);
   CHECK_THROWS_AS(builder.add_turn("8", {"1", end}, {"2", start}), MapError);
   CHECK_THROWS_AS((void)builder.lane_pose({"1", end}, 0), MapError);
@@ -302,40 +304,36 @@ TEST_CASE("a plan that cannot be built is refused with a sentence") {
 }
 
 TEST_CASE("faults in a plan are named with their number") {
-  auto const complaint = [](auto const& change) {
+  auto const check = [](auto const& change, std::string const& words) {
     auto plan = straight("1", {}, 100, 0, 2);
     plan.line = lay_from({}, {{40.0}, {30.0, 0.01, 0.01}, {30.0}});
     change(plan);
-    return support::error_of([&] { MapBuilder().add_road(plan); });
+    check_error([&] { MapBuilder().add_road(plan); }, words);
   };
-  auto const has = [](std::string const& text, std::string const& part) {
-    CHECK_MESSAGE(text.find(part) < text.size(), text);
+  check([](RoadPlan&) {}, "no error");
+  check([](RoadPlan& p) { p.line[0].s = 1.0; }, "geometry 0 is at s 1 m instead of 0 m");
+  check([](RoadPlan& p) { p.line[2].s = 60.0; }, "geometry 2 is at s 60 m instead of 70 m");
+  check([](RoadPlan& p) { p.line[1].y = 0.5; }, "geometry 1 begins 0.5 m and 0 rad from where");
+  check([](RoadPlan& p) { p.line[1].heading = 0.25; }, "geometry 1 begins 0 m and 0.25 rad from where");
+  check([](RoadPlan& p) { p.line[1].length = -30.0; }, "geometry 1 has no length");
+  check([](RoadPlan& p) { p.line[2].x = NAN; }, "geometry 2: a coordinate lies beyond");
+  check([](RoadPlan& p) { p.line[2].curvature_end = 1e9; }, "geometry 2: the curve turns by more than 100 rad");
+  check([](RoadPlan& p) { p.line[0].kind = GeometryKind::cubic; }, "geometry 0: it is a cubic without its curve");
+  auto const check_widths = [&](std::vector<CubicRecord> const& records, std::string const& words) {
+    check([&](RoadPlan& p) { p.sections[0].right[1].widths = records; }, words);
   };
-  has(complaint([](RoadPlan&) {}), "no error");
-  has(complaint([](RoadPlan& p) { p.line[0].s = 1.0; }), "geometry 0 is at s 1 m instead of 0 m");
-  has(complaint([](RoadPlan& p) { p.line[2].s = 60.0; }), "geometry 2 is at s 60 m instead of 70 m");
-  has(complaint([](RoadPlan& p) { p.line[1].y = 0.5; }), "geometry 1 begins 0.5 m and 0 rad from where");
-  has(complaint([](RoadPlan& p) { p.line[1].heading = 0.25; }), "geometry 1 begins 0 m and 0.25 rad from where");
-  has(complaint([](RoadPlan& p) { p.line[1].length = -30.0; }), "geometry 1 has no length");
-  has(complaint([](RoadPlan& p) { p.line[2].x = NAN; }), "geometry 2: a coordinate lies beyond");
-  has(complaint([](RoadPlan& p) { p.line[2].curvature_end = 1e9; }),
-      "geometry 2: the curve turns by more than 100 rad");
-  has(complaint([](RoadPlan& p) { p.line[0].kind = GeometryKind::cubic; }),
-      "geometry 0: it is a cubic without its curve");
-  auto const widths = [&](std::vector<CubicRecord> const& records) {
-    return complaint([&](RoadPlan& p) { p.sections[0].right[1].widths = records; });
-  };
-  has(widths({{0, 3, 0, 0, 0}, {50, 3, 0, 0, 0}, {70, 3, 0, 0, 0}}), "no error");
-  has(widths({{0, 3, 0, 0, 0}, {50, 3, 0, 0, 0}, {20, 3, 0, 0, 0}}),
-      "lane -2, width record 2 is at s 20 m, not after the previous one, at 50 m");
-  has(widths({{0, 3, 0, 0, 0}, {0, 4, 0, 0, 0}}), "width record 1 is at s 0 m, not after the previous one, at 0 m");
-  has(widths({{-1, 3, 0, 0, 0}}), "width record 0 is at s -1 m, not after 0");
-  has(widths({{0, 3, 0, 0, 0}, {50, NAN, 0, 0, 0}}), "width record 1 is not finite");
-  has(complaint([](RoadPlan& p) {
+  check_widths({{0, 3, 0, 0, 0}, {50, 3, 0, 0, 0}, {70, 3, 0, 0, 0}}, "no error");
+  check_widths({{0, 3, 0, 0, 0}, {50, 3, 0, 0, 0}, {20, 3, 0, 0, 0}},
+               "lane -2, width record 2 is at s 20 m, not after the previous one, at 50 m");
+  check_widths({{0, 3, 0, 0, 0}, {0, 4, 0, 0, 0}}, "width record 1 is at s 0 m, not after the previous one, at 0 m");
+  check_widths({{-1, 3, 0, 0, 0}}, "width record 0 is at s -1 m, not after 0");
+  check_widths({{0, 3, 0, 0, 0}, {50, NAN, 0, 0, 0}}, "width record 1 is not finite");
+  check(
+      [](RoadPlan& p) {
         p.lane_offset = {{30, 0, 0, 0, 0}, {10, 1, 0, 0, 0}};
-      }),
+      },
       "lane offset record 1 is at s 10 m, not after the previous one, at 30 m");
-  has(complaint([](RoadPlan& p) { p.line.front().s = 0.004; }), "no error");  // rounded as in files
+  check([](RoadPlan& p) { p.line.front().s = 0.004; }, "no error");  // rounded as in files
 }
 
 TEST_CASE("a map of nothing is refused with what to add, and no word about a file") {
@@ -357,8 +355,7 @@ TEST_CASE("a call that fails changes nothing") {
   builder.connect({"4", end}, {"2", start});
   auto const fails = [&builder](auto const& run, std::string const& why) {
     auto const before = builder.document();
-    auto const what = support::error_of([&] { run(); });
-    CHECK_MESSAGE(what.find(why) < what.size(), what);
+    check_error(run, why);
     CHECK(builder.document() == before);
   };
   // Where the turn begins, where it ends, its id:
@@ -434,16 +431,15 @@ TEST_CASE("road ends where no lane goes on as a lane of the other are not connec
   builder.add_road(straight("2", {5000, 5000, 1}, 50, 0, 1));
   builder.add_road(straight("3", {50, 0, 0}, 50, 1, 1));
   auto const before = builder.document();
-  auto const why = [&](RoadEnd const& a, RoadEnd const& b) {
-    return support::error_of([&] { builder.connect(a, b); });
+  auto const refuses = [&builder](RoadEnd const& a, RoadEnd const& b, std::string const& why) {
+    check_error([&] { builder.connect(a, b); }, why);
   };
-  std::string const none_faces = "no lane of one continues as a lane of the other";
-  CHECK(why({"1", end}, {"2", end}).find(none_faces) != std::string::npos);
-  CHECK(why({"1", end}, {"1", end}).find(none_faces) != std::string::npos);
-  CHECK(why({"1", end}, {"2", start}).find("they do not meet") != std::string::npos);
-  CHECK(why({"3", end}, {"3", end}).find("they do not meet") != std::string::npos);
+  refuses({"1", end}, {"2", end}, "no lane of one continues as a lane of the other");
+  refuses({"1", end}, {"1", end}, "no lane of one continues as a lane of the other");
+  refuses({"1", end}, {"2", start}, "they do not meet");
+  refuses({"3", end}, {"3", end}, "they do not meet");
   CHECK(builder.document() == before);
-  CHECK(why({"1", end}, {"3", start}) == "no error");
+  refuses({"1", end}, {"3", start}, "no error");
 }
 
 TEST_CASE("a link that only one of the roads' lanes names becomes a connection like any other") {
@@ -471,8 +467,7 @@ TEST_CASE("a link that another road contradicts is not dissolved") {
   builder.connect({"1", end}, {"2", start});
   builder.document().roads[1].predecessor->id = "3";
   auto const before = builder.document();
-  auto const why = support::error_of([&] { builder.connect({"1", end}, {"3", start}); });
-  CHECK(why.find("only one of them is linked to the other") != std::string::npos);
+  check_error([&] { builder.connect({"1", end}, {"3", start}); }, "only one of them is linked to the other");
   CHECK(builder.document() == before);
 }
 

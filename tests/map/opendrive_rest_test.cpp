@@ -6,8 +6,6 @@
 #include <string_view>
 #include <vector>
 
-#include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive/reader.hpp"
 #include "cambium/map/opendrive/reading_limits.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 #include "../support/maps.hpp"
@@ -17,6 +15,7 @@ namespace {
 
 using namespace cambium::map;
 using opendrive::Orientation;
+using road_text::count;
 using road_text::read;
 
 /// A file with one road; a test says what it holds beside a plan view and lanes.
@@ -27,12 +26,6 @@ std::string file_with(std::string const& in_road, std::string const& in_root = "
 <lanes><laneSection s="0"><center><lane id="0"/></center><right><lane id="-1" type="driving">
 <width sOffset="0" a="3" b="0" c="0" d="0"/>)" +
          in_lane + R"(</lane></right></laneSection></lanes></road>)" + in_root + "</OpenDRIVE>";
-}
-
-std::size_t count(std::string const& text, std::string_view words) {
-  std::size_t found = 0;
-  for (auto at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++found;
-  return found;
 }
 
 }  // namespace

@@ -17,27 +17,17 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"
 #include "../support/maps.hpp"
-#include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/detail/xml_context.hpp"
 #include "cambium/map/opendrive/detail/xml_text.hpp"
-#include "cambium/map/opendrive/reader.hpp"
+#include "road_text.hpp"
 
 namespace {
 
 using namespace cambium::map;
-using cambium::Diagnostic;
 using cambium::MapError;
+using road_text::count;
 
-OpenDriveDocument read(std::string const& text) {
-  std::vector<Diagnostic> diagnostics;
-  return cambium::map::read_opendrive_document(text, "test.xodr", diagnostics);
-}
-
-std::size_t count(std::string const& text, std::string const& words) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++found;
-  return found;
-}
+OpenDriveDocument read(std::string const& text) { return road_text::read(text).document; }
 
 /// How often each attribute with a value stands at a path, as "/road/type type=rural"; and each element.
 using Census = std::map<std::string, int>;

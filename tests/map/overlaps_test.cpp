@@ -8,10 +8,9 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "../support/corpus.hpp"
+#include "corpus_maps.hpp"
 #include "../support/map_use.hpp"
 #include "../support/maps.hpp"
 #include "lanes_by_hand.hpp"
@@ -41,12 +40,6 @@ void check_consistent(std::vector<Lane> const& lanes) {
             }) == 1);
     }
   }
-}
-
-double distance_to(Lane const& lane, Point const& p) {
-  auto const foot = lane.path.project(p);
-  double const past = std::max({-foot.s, foot.s - lane.length(), 0.0});
-  return std::hypot(foot.lateral, past);
 }
 
 }  // namespace
@@ -298,7 +291,7 @@ TEST_CASE("overlaps are where a look along every pair of lanes finds them") {
         };
         for (double s = 0; s < a.length(); s += 0.05) {
           auto const p = a.path.pose(s).position();
-          double const distance = distance_to(b, p), foot = b.path.project(p).s;
+          double const distance = by_hand::distance(b.path, p), foot = b.path.project(p).s;
           bool const is_beside = foot > 0.02 && foot < b.length() - 0.02;  // past the end only crossings count
           if (distance < clearance - 0.02 && is_beside) CHECK(inside(s, 1e-9));
           if (distance > clearance + 0.02) CHECK_FALSE(inside(s, 0.0));
@@ -311,7 +304,7 @@ TEST_CASE("overlaps are where a look along every pair of lanes finds them") {
           auto const p = a.path.pose(s).position();
           double const foot = b.path.project(p).s;
           bool const ends_here = s == 0.0 || s == a.length() || foot < 0.3 || foot > b.length() - 0.3;
-          if (!ends_here) CHECK(std::abs(distance_to(b, p) - clearance) < 0.01);
+          if (!ends_here) CHECK(std::abs(by_hand::distance(b.path, p) - clearance) < 0.01);
         }
       }
       total += a.overlaps.size();
@@ -322,40 +315,32 @@ TEST_CASE("overlaps are where a look along every pair of lanes finds them") {
 
 TEST_CASE("narrow oncoming lanes of roads that follow each other are no conflict") {
   cambium::MapBuilder builder;
-  for (char const* id : {"1", "2"}) {
-    cambium::map::RoadPlan road;
-    road.id = id;
-    road.line = cambium::map::lay_from({id[0] == '1' ? 0.0 : 50.0, 0.0, 0.0}, {{50.0}});
-    road.sections = {{.left = cambium::map::equal_lanes(1, 2.0), .right = cambium::map::equal_lanes(1, 2.0)}};
-    builder.add_road(road);
-  }
-  builder.connect({"1", cambium::map::opendrive::ContactPoint::end},
-                  {"2", cambium::map::opendrive::ContactPoint::start});
+  for (auto const& [id, x] : {std::pair("1", 0.0), {"2", 50.0}})
+    builder.add_road({.id = id,
+                      .line = lay_from({x, 0.0, 0.0}, {{50.0}}),
+                      .sections = {{.left = equal_lanes(1, 2.0), .right = equal_lanes(1, 2.0)}}});
+  builder.connect({"1", opendrive::ContactPoint::end}, {"2", opendrive::ContactPoint::start});
   auto const map = builder.build();
   REQUIRE(map->lanes().size() == 4);
   for (auto const& lane : map->lanes()) CHECK(lane.overlaps.empty());
 }
 
 TEST_CASE("on every map of the corpus overlaps end within 1 cm of where finely sampled lanes come as near") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
   MapOptions fine;
   fine.position_tolerance = 5e-5;
   fine.heading_tolerance = 1e-3;
   std::size_t ends = 0;
-  for (auto const& file : corpus::maps(*folder)) {
-    CAPTURE(file.stem().string());
-    auto const map = cambium::load_opendrive(file.string()).map;
+  bool const is_there = for_each_corpus_map([&](auto const& file, Map const& map) {
     auto const twin = cambium::load_opendrive(file.string(), fine).map;
-    REQUIRE(map->lanes().size() == twin->lanes().size());
+    REQUIRE(map.lanes().size() == twin->lanes().size());
     std::vector<Lane> lanes(twin->lanes().begin(), twin->lanes().end());
     find_overlaps(
         lanes, [&](Lane const& lane, double s) { return twin->road(lane.road).elevation.value(lane.station_at(s)); },
         fine.overlap_clearance);  // without the exact paths
     double worst = 0.0;
-    for (auto const& lane : map->lanes()) {
+    for (auto const& lane : map.lanes()) {
       auto const& other = lanes[index_of(lane.id)];
-      CAPTURE(map->describe(lane.id));
+      CAPTURE(map.describe(lane.id));
       CHECK(lane.overlaps.size() == other.overlaps.size());
       for (auto const& o : lane.overlaps) {
         auto const off = [&](double s, double fine_s) {
@@ -371,6 +356,6 @@ TEST_CASE("on every map of the corpus overlaps end within 1 cm of where finely s
       }
     }
     CHECK(worst < 0.01);
-  }
-  CHECK(ends > 9000);
+  });
+  if (is_there) CHECK(ends > 9000);
 }

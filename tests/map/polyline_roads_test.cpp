@@ -31,11 +31,6 @@ std::vector<Point> points_of(At const& at, double step = 4.0) {
   return points;
 }
 
-double distance(geometry::Line const& line, Point const& p) {
-  auto const foot = line.project(p);
-  return std::hypot(foot.lateral, std::max({-foot.s, foot.s - line.length(), 0.0}));
-}
-
 }  // namespace
 
 TEST_CASE("a lane along points passes through them, with borders at the distances given and no kinks") {
@@ -119,17 +114,9 @@ TEST_CASE("polylines that make no lane are refused") {
 
 TEST_CASE("errors of polylines name the road and the point, and tell NaN from points too close") {
   double const nan = std::numeric_limits<double>::quiet_NaN(), far = 1e9;
-  auto const said = [](auto const& make) -> std::string {
-    try {
-      (void)make();
-    } catch (MapError const& e) {
-      return e.what();
-    }
-    return "";
-  };
   std::vector<SideWidths> const widths{{1, 1}};
   auto const along = [&](std::vector<Point> const& points, std::string const& id = {}) {
-    return said([&] { return lane_along(points, widths, {}, id); });
+    return support::error_of([&] { (void)lane_along(points, widths, {}, id); });
   };
   CHECK(along({{0, 0}, {10, 0}, {nan, 5}}, "12") ==
         "road 12: point 2 (of 0 to 2) is not a finite number: nan, 5; give finite coordinates [m]");
@@ -145,16 +132,17 @@ TEST_CASE("errors of polylines name the road and the point, and tell NaN from po
         "polyline: point 1 (of 0 to 1) is 2e+06 m from the previous one; give points within 1000 km");
   CHECK(along({{0, 0}}, "a") == "road a: it has one point; give at least two");
   std::vector<Point> const line{{0, 0}, {10, 0}, {20, 1}};
-  CHECK(said([&] {
-          return lane_along(line, widths, std::vector<double>{0, nan, 0}, "7");
+  CHECK(support::error_of([&] {
+          (void)lane_along(line, widths, std::vector<double>{0, nan, 0}, "7");
         }) == "road 7: point 1 (of 0 to 2) has a heading of nan; give radians, up to 10 000");
-  CHECK(said([&] {
-          return lane_along(line, std::vector<SideWidths>{{1, 1}, {1, -1}, {1, 1}}, {}, "7");
-        }) ==
+  std::vector<SideWidths> const negative{{1, 1}, {1, -1}, {1, 1}};
+  CHECK(support::error_of([&] { (void)lane_along(line, negative, {}, "7"); }) ==
         "road 7: the widths at point 1 are 1 and -1 m, not numbers from 0, up to 1 km wide; give the distances to the "
         "borders in m");
   using Borders = std::vector<std::vector<Point>>;
-  auto const between = [&](Borders const& borders) { return said([&] { return lanes_between(borders, "12"); }); };
+  auto const between = [&](Borders const& borders) {
+    return support::error_of([&] { (void)lanes_between(borders, "12"); });
+  };
   CHECK(between({line, {{0, -3}, {20, nan}}}) ==
         "road 12, border 1: point 1 (of 0 to 1) is not a finite number: 20, nan; give finite coordinates [m]");
   CHECK(between({line, {{0, 3}, {20, 4}}}) ==

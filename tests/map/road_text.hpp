@@ -49,52 +49,54 @@ struct Road {
   std::string lane_offset{};  ///< elements
 };
 
-inline void write(std::ostringstream& xml, Lane const& lane) {
-  xml << "<lane id=\"" << lane.id << "\" type=\"" << lane.type << '"';
-  if (!lane.direction.empty()) xml << " direction=\"" << lane.direction << '"';
-  xml << "><link>";
-  for (int const id : lane.before) xml << "<predecessor id=\"" << id << "\"/>";
-  for (int const id : lane.behind) xml << "<successor id=\"" << id << "\"/>";
-  xml << "</link>";
-  if (lane.widths.empty())
-    xml << "<width sOffset=\"0\" a=\"" << lane.width << "\" b=\"0\" c=\"0\" d=\"0\"/>";
-  else
-    xml << lane.widths;
-  xml << "</lane>\n";
+inline std::string number(double value) {
+  std::ostringstream text;
+  text.precision(17);
+  text << value;
+  return text.str();
 }
 
-inline void write(std::ostringstream& xml, Road const& road) {
-  xml << "<road id=\"" << road.id << "\" length=\"" << road.length << "\" junction=\"" << road.junction << "\" rule=\""
-      << road.rule << "\"><link>";
-  if (!road.before.empty()) xml << "<predecessor " << road.before << "/>";
-  if (!road.behind.empty()) xml << "<successor " << road.behind << "/>";
-  xml << "</link>\n<planView><geometry s=\"0\" x=\"" << road.x << "\" y=\"" << road.y << "\" hdg=\"" << road.heading
-      << "\" length=\"" << road.length << "\">";
-  if (road.curvature == 0.0)
-    xml << "<line/>";
-  else
-    xml << "<arc curvature=\"" << road.curvature << "\"/>";
-  xml << "</geometry></planView>\n<lanes>" << road.lane_offset;
+inline std::string geometry(double s, double x, double y, double heading, double length,
+                            std::string const& kind = "<line/>") {
+  return "<geometry s=\"" + number(s) + "\" x=\"" + number(x) + "\" y=\"" + number(y) + "\" hdg=\"" + number(heading) +
+         "\" length=\"" + number(length) + "\">" + kind + "</geometry>";
+}
+
+inline std::string width(double s, double a, double b = 0.0) {
+  return "<width sOffset=\"" + number(s) + "\" a=\"" + number(a) + "\" b=\"" + number(b) + "\" c=\"0\" d=\"0\"/>";
+}
+
+inline std::string text_of(Lane const& lane) {
+  std::string text = "<lane id=\"" + std::to_string(lane.id) + "\" type=\"" + lane.type + "\"";
+  if (!lane.direction.empty()) text += " direction=\"" + lane.direction + "\"";
+  text += "><link>";
+  for (int const id : lane.before) text += "<predecessor id=\"" + std::to_string(id) + "\"/>";
+  for (int const id : lane.behind) text += "<successor id=\"" + std::to_string(id) + "\"/>";
+  return text + "</link>" + (lane.widths.empty() ? width(0.0, lane.width) : lane.widths) + "</lane>\n";
+}
+
+inline std::string text_of(Road const& road) {
+  auto const kind = road.curvature == 0.0 ? "<line/>" : "<arc curvature=\"" + number(road.curvature) + "\"/>";
+  std::string text = "<road id=\"" + road.id + "\" length=\"" + number(road.length) + "\" junction=\"" + road.junction +
+                     "\" rule=\"" + road.rule + "\"><link>";
+  if (!road.before.empty()) text += "<predecessor " + road.before + "/>";
+  if (!road.behind.empty()) text += "<successor " + road.behind + "/>";
+  text += "</link>\n<planView>" + geometry(0.0, road.x, road.y, road.heading, road.length, kind) +
+          "</planView>\n<lanes>" + road.lane_offset;
   for (auto const& section : road.sections) {
-    xml << "<laneSection s=\"" << section.s << "\"><left>\n";
-    for (auto const& lane : section.lanes)
-      if (lane.id > 0) write(xml, lane);
-    xml << "</left><center><lane id=\"0\" type=\"none\"/></center><right>\n";
-    for (auto const& lane : section.lanes)
-      if (lane.id < 0) write(xml, lane);
-    xml << "</right></laneSection>";
+    std::string left, right;
+    for (auto const& lane : section.lanes) (lane.id > 0 ? left : right) += text_of(lane);
+    text += "<laneSection s=\"" + number(section.s) + "\"><left>\n" + left +
+            "</left><center><lane id=\"0\" type=\"none\"/></center><right>\n" + right + "</right></laneSection>";
   }
-  xml << "</lanes></road>\n";
+  return text + "</lanes></road>\n";
 }
 
 /// The text of a file; `junctions` are elements.
 inline std::string file(std::vector<Road> const& roads, std::string const& junctions = "") {
-  std::ostringstream xml;
-  xml.precision(17);
-  xml << "<OpenDRIVE><header revMajor=\"1\" revMinor=\"8\"/>\n";
-  for (auto const& road : roads) write(xml, road);
-  xml << junctions << "</OpenDRIVE>";
-  return xml.str();
+  std::string text = "<OpenDRIVE><header revMajor=\"1\" revMinor=\"8\"/>\n";
+  for (auto const& road : roads) text += text_of(road);
+  return text + junctions + "</OpenDRIVE>";
 }
 
 /// A junction of one connection over lane `from` to lane `to`.
@@ -130,6 +132,13 @@ inline Reading read(std::string const& text) {
   Reading reading;
   reading.document = cambium::map::read_opendrive_document(text, "test.xodr", reading.diagnostics);
   return reading;
+}
+
+/// How often `words` stand in a text.
+inline std::size_t count(std::string const& text, std::string const& words) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(words); at != text.npos; at = text.find(words, at + 1)) ++found;
+  return found;
 }
 
 /// How many findings of the severity have `words` in their sentence.

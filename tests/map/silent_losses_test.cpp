@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -10,11 +9,10 @@
 #include <pugixml.hpp>
 
 #include "cambium/core/error.hpp"
-#include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 
-#include "../support/maps.hpp"
+#include "../support/xml_damage.hpp"
 
 namespace {
 
@@ -131,14 +129,6 @@ Outcome outcome_of(std::string const& text) {
   return outcome;
 }
 
-void collect(pugi::xml_node node, std::vector<pugi::xml_node>& all) {
-  for (auto const child : node)
-    if (child.type() == pugi::node_element) {
-      all.push_back(child);
-      collect(child, all);
-    }
-}
-
 /// Calls `visit(element)` with each element of a fresh copy of the file.
 template <class Visit>
 void for_each_element(Visit const& visit) {
@@ -147,18 +137,12 @@ void for_each_element(Visit const& visit) {
     pugi::xml_document xml;
     REQUIRE(xml.load_string(everything));
     std::vector<pugi::xml_node> all;
-    collect(xml, all);
+    xml_damage::collect(xml, all);
     elements = all.size();
     CAPTURE(all[i].path());
     visit(all[i]);
   }
   CHECK(elements > 80);
-}
-
-std::string text_of(pugi::xml_node node) {
-  std::ostringstream text;
-  node.root().print(text, "", pugi::format_raw);
-  return text.str();
 }
 
 /// Adds something at each element of the file in turn; it must be written again, or there is a finding about it, the
@@ -168,7 +152,7 @@ void check_elements(Add const& add) {
   for_each_element([&](pugi::xml_node node) {
     std::string const name = node.name(), around = node.parent().name();
     std::string const added = add(node);
-    auto const text = text_of(node);
+    auto const text = xml_damage::text_of(node.root());
     auto const after = outcome_of(text);
     bool const is_found = after.is_found(name) || after.is_found(around) || after.is_found(added);
     CHECK((is_found || counts_of(after.written) == counts_of(text)));
@@ -208,7 +192,7 @@ TEST_CASE("an unknown element is kept anywhere, or reported as lost") {
 TEST_CASE("an unknown attribute is kept anywhere, or reported as lost") {
   for_each_element([](pugi::xml_node node) {
     node.append_attribute("vendorNote") = "kept or found";
-    auto const after = outcome_of(text_of(node));
+    auto const after = outcome_of(xml_damage::text_of(node.root()));
     CHECK((after.is_found(node.name()) || after.written.find("vendorNote=\"kept or found\"") != std::string::npos));
   });
 }
@@ -216,7 +200,7 @@ TEST_CASE("an unknown attribute is kept anywhere, or reported as lost") {
 TEST_CASE("text in any element is kept, or found to be lost") {
   for_each_element([](pugi::xml_node node) {
     node.append_child(pugi::node_pcdata).set_value("kept or found");
-    auto const after = outcome_of(text_of(node));
+    auto const after = outcome_of(xml_damage::text_of(node.root()));
     CHECK((after.is_found(node.name()) || after.written.find("kept or found") != std::string::npos));
   });
 }
@@ -229,7 +213,7 @@ TEST_CASE("an unreadable value is kept in any attribute, or reported, and a bad 
       a = "yes please";
       Outcome after;
       try {
-        after = outcome_of(text_of(node));
+        after = outcome_of(xml_damage::text_of(node.root()));
       } catch (cambium::MapError const&) {
         after.findings = {node.name()};  // the only road is unusable
       }

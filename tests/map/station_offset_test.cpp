@@ -7,8 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/opendrive.hpp"
-#include "../support/corpus.hpp"
+#include "corpus_maps.hpp"
 #include "../support/maps.hpp"
 
 namespace {
@@ -68,14 +67,10 @@ TEST_CASE("a point that was laid beside a reference line comes back with its sta
 }
 
 TEST_CASE("the nearest point of a reference line is found on every map of the corpus") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
   std::mt19937 random(7);
-  for (auto const& file : corpus::maps(*folder)) {
-    auto const map = cambium::load_opendrive(file.string()).map;
-    CAPTURE(file.stem().string());
+  for_each_corpus_map([&random](auto const&, cb::Map const& map) {
     for (int i = 0; i < 20; ++i) {
-      auto const& road = map->roads()[random() % map->roads().size()];
+      auto const& road = map.roads()[random() % map.roads().size()];
       auto const& line = road.reference_line;
       auto const between = [&](double low, double high) {
         return low + (high - low) * static_cast<double>(random() % 1001) / 1000.0;
@@ -91,7 +86,7 @@ TEST_CASE("the nearest point of a reference line is found on every map of the co
       auto const foot = line.at(found.s);
       CHECK(std::abs(std::hypot(p.x() - foot.x, p.y() - foot.y) - found.distance) < 0.02);  // at gaps of the line
     }
-  }
+  });
 }
 
 TEST_CASE("the foot point of a point beyond the end is the end, and that beside a kink the kink") {

@@ -21,29 +21,16 @@ using cambium::Severity;
 using road_text::connection;
 using road_text::count;
 using road_text::file;
+using road_text::geometry;
 using road_text::junction;
 using road_text::lane_at;
 using road_text::leads;
+using road_text::number;
 using road_text::Road;
 using road_text::to_end;
 using road_text::to_junction;
 using road_text::to_start;
-
-std::string number(double value) {
-  std::ostringstream text;
-  text.precision(17);
-  text << value;
-  return text.str();
-}
-
-std::string geometry(double s, double x, double y, double heading, double length, std::string const& kind = "<line/>") {
-  return "<geometry s=\"" + number(s) + "\" x=\"" + number(x) + "\" y=\"" + number(y) + "\" hdg=\"" + number(heading) +
-         "\" length=\"" + number(length) + "\">" + kind + "</geometry>";
-}
-
-std::string width(double s, double a, double b = 0.0) {
-  return "<width sOffset=\"" + number(s) + "\" a=\"" + number(a) + "\" b=\"" + number(b) + "\" c=\"0\" d=\"0\"/>";
-}
+using road_text::width;
 
 std::string lane(int id, std::string const& content) {
   return "<lane id=\"" + std::to_string(id) + "\" type=\"driving\">" + content + "</lane>";
@@ -72,8 +59,6 @@ cambium::LoadedMap load(std::string const& text, bool is_clean = true) {
   return loaded;
 }
 
-cambium::geometry::Pose end_of(cambium::map::Lane const& lane) { return lane.path.pose(lane.length()); }
-
 bool is_near(cambium::geometry::Pose const& pose, double x, double y, double within = 1e-6) {
   return std::hypot(pose.x - x, pose.y - y) < within;
 }
@@ -90,7 +75,7 @@ TEST_CASE("geometries down to 1e-15 m harm nothing, wherever they stand") {
   CHECK(count(loaded, Severity::warning, "shorter than a millionth of a millimetre (and 1 more)") == 1);
   auto const& l = lane_at(loaded, {"1", 10.0, -1});
   CHECK(l.length() == doctest::Approx(100.0001).epsilon(1e-7));
-  CHECK(is_near(end_of(l), 100.0001, -1.5, 1e-5));
+  CHECK(is_near(l.path.end_pose(), 100.0001, -1.5, 1e-5));
 }
 
 TEST_CASE("sections down to a millimetre are lanes of their own, shorter ones are passed over") {
@@ -136,7 +121,7 @@ TEST_CASE("geometries whose s has gaps of less than a millimetre are one line") 
 TEST_CASE("a gap in the reference line is reported and kept") {
   auto const loaded = load(one_road(100, geometry(0, 0, 0, 0, 50) + geometry(50, 50, 0.008, 0, 50), one_lane), false);
   CHECK(count(loaded, Severity::warning, "0.008 m off the end") == 1);
-  CHECK(is_near(end_of(loaded.map->lanes()[0]), 100, -1.492));
+  CHECK(is_near(loaded.map->lanes()[0].path.end_pose(), 100, -1.492));
 }
 
 TEST_CASE("a kink in the reference line has one direction on either side") {
@@ -146,41 +131,10 @@ TEST_CASE("a kink in the reference line has one direction on either side") {
   CHECK(line.at(50.0 - 1e-9).heading == 0.0);
   CHECK(line.at(50.0).heading == 1.2);
   auto const& l = loaded.map->lanes()[0];
-  CHECK(is_near(end_of(l), 50 + 50 * std::cos(1.2) + 1.5 * std::sin(1.2), 50 * std::sin(1.2) - 1.5 * std::cos(1.2)));
+  CHECK(is_near(l.path.end_pose(), 50 + 50 * std::cos(1.2) + 1.5 * std::sin(1.2),
+                50 * std::sin(1.2) - 1.5 * std::cos(1.2)));
   CHECK(l.path.pose(40.0).heading == doctest::Approx(0.0));
   CHECK(l.path.pose(l.length() - 10.0).heading == doctest::Approx(1.2));
-}
-
-TEST_CASE("spirals begin with any curvature, change sign, or are arcs") {
-  struct Spiral {
-    double start, end;
-  };
-  for (auto const [start, end] : {Spiral{0.02, 0.05}, Spiral{-0.03, 0.03}, Spiral{0.02, 0.02}, Spiral{0, 0}}) {
-    CAPTURE(start);
-    CAPTURE(end);
-    auto const kind = "<spiral curvStart=\"" + number(start) + "\" curvEnd=\"" + number(end) + "\"/>";
-    auto const loaded = load(one_road(60, geometry(0, 0, 0, 0, 60, kind), one_lane));
-    double x = 0.0, y = 0.0;  // by Simpson's rule
-    int const steps = 20000;
-    for (int i = 0; i <= steps; ++i) {
-      double const s = 60.0 * i / steps, weight = i == 0 || i == steps ? 1 : (i % 2 == 1 ? 4 : 2);
-      double const heading = s * (start + 0.5 * (end - start) * s / 60.0);
-      x += weight * std::cos(heading) * 60.0 / steps / 3.0;
-      y += weight * std::sin(heading) * 60.0 / steps / 3.0;
-    }
-    auto const p = cambium::map::point_at(loaded.map->roads()[0], 60.0, 0.0);
-    CHECK(std::hypot(p.x - x, p.y - y) < 1e-9);
-    double const heading = 30.0 * (start + end);
-    CHECK(is_near(end_of(loaded.map->lanes()[0]), x + 1.5 * std::sin(heading), y - 1.5 * std::cos(heading)));
-  }
-}
-
-TEST_CASE("an arc of less than 1e-6 1/m is none the less an arc after a kilometre") {
-  double const k = 9e-7;
-  auto const loaded = load(one_road(1000, geometry(0, 0, 0, 0, 1000, "<arc curvature=\"9e-7\"/>"), one_lane));
-  auto const p = cambium::map::point_at(loaded.map->roads()[0], 1000.0, 0.0);
-  CHECK(std::abs(p.x - std::sin(1000 * k) / k) < 1e-9);
-  CHECK(std::abs(p.y - 2 * std::pow(std::sin(500 * k), 2) / k) < 1e-9);  // 0.45 m
 }
 
 TEST_CASE("a paramPoly3 of another length than its attribute says is stretched along to that") {
@@ -212,7 +166,7 @@ TEST_CASE("a width below 0 is a lane without width, and can be asked for as it i
 TEST_CASE("widths of lane 0 are ignored") {
   auto const loaded = load(one_road(100, geometry(0, 0, 0, 0, 100), section(0, lane(-1, width(0, 3)), width(0, 5))));
   CHECK(loaded.map->lanes().size() == 1);
-  CHECK(is_near(end_of(loaded.map->lanes()[0]), 100, -1.5));
+  CHECK(is_near(loaded.map->lanes()[0].path.end_pose(), 100, -1.5));
 }
 
 TEST_CASE("lanes on either side of a gap in the ids are neighbours") {
@@ -224,7 +178,7 @@ TEST_CASE("lanes on either side of a gap in the ids are neighbours") {
     CHECK(inner.right_neighbor == outer.id);
     CHECK(inner.may_change_right(50.0));
     CHECK(outer.may_change_left(50.0));
-    CHECK(is_near(end_of(outer), 100, -4.5));
+    CHECK(is_near(outer.path.end_pose(), 100, -4.5));
   }
 }
 
@@ -251,8 +205,8 @@ TEST_CASE("a right lane's border that is given as a magnitude lies to the right"
   for (double const sign : {1.0, -1.0}) {
     auto const loaded = load(
         one_road(100, geometry(0, 0, 0, 0, 100), section(0, lane(-1, border(3 * sign)) + lane(-2, border(5 * sign)))));
-    CHECK(is_near(end_of(lane_at(loaded, {"1", 0.0, -1})), 100, -1.5));
-    CHECK(is_near(end_of(lane_at(loaded, {"1", 0.0, -2})), 100, -4));
+    CHECK(is_near(lane_at(loaded, {"1", 0.0, -1}).path.end_pose(), 100, -1.5));
+    CHECK(is_near(lane_at(loaded, {"1", 0.0, -2}).path.end_pose(), 100, -4));
     CHECK(lane_point(loaded.map->roads()[0], 50.0, -2)->t == doctest::Approx(-4.0));
   }
 }
@@ -302,14 +256,6 @@ TEST_CASE("a road that touches a junction with both ends is left and entered at 
   CHECK(leads(loaded, {"2", 10.0, -1}, {"1", 10.0, -1}));
   auto const ring = loaded.map->find_lane("1", 0.0, -1);
   CHECK(loaded.map->shortest_route({ring, 20.0}, {ring, 10.0}).has_value());
-}
-
-TEST_CASE("a junction without connections is reported, and its roads are there") {
-  auto const loaded = load(file({Road{.behind = to_junction("9")}}, junction("9", "")), false);
-  CHECK(count(loaded, Severity::warning, "no connection") == 1);
-  CHECK(loaded.map->junctions().size() == 1);
-  CHECK(loaded.map->junctions()[0].lanes.empty());
-  CHECK(lane_at(loaded, {"1", 0.0, -1}).successors.empty());
 }
 
 TEST_CASE("on and under a bridge both lanes are found, the one with the vehicle's direction first") {
