@@ -16,6 +16,7 @@
 // First: it says which language and flags cambium needs.
 #include "cambium/core/macros.hpp"
 
+#include "cambium/core/constants.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/distribution.hpp"

@@ -10,6 +10,7 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include "cambium/core/constants.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -135,7 +136,7 @@ struct Collision {
 /// (after the at-fault collisions of Dauner et al. 2023). With a `look_ahead`, whether it will, if all keep their
 /// velocities; then only agents count that are ahead of its reference point now. O(agents + objects).
 struct AtFaultCollision {
-  double standing_speed = 0.05;
+  double standing_speed = blameless_speed;
   double look_ahead = 0.0;
 
   static constexpr char const* name = "at_fault_collision";

@@ -18,14 +18,10 @@ namespace cambium {
 
 namespace detail {
 
-/// A vehicle slower than this at a junction has hardly begun to move, or is about to stop [m/s].
-inline constexpr double starting_speed = 2.5;
 /// A slow vehicle so close to its line has just started, or is about to stop there [m].
 inline constexpr double short_way = 15.0;
 /// A vehicle that stands at its line is not beyond it, whatever the rounding [m].
 inline constexpr double over_line = 0.1;
-/// Acceleration of a vehicle that leaves a junction [m/s^2].
-inline constexpr double pull_away = 1.0;
 
 /// Length [m] by which a body exceeds the shape for which conflicts are computed, for instance a larger one or one at
 /// an angle.
@@ -156,10 +152,11 @@ template <class View>
   return goes(conflict.light) && goes(conflict.other_light);
 }
 
-/// Whether the other vehicle leaves its place to wait before the own one, where both are outside: it can no longer stop
-/// there, or will not be able to after this step if it accelerates by `pull_away`, and is nearer (at equal distance:
-/// has the smaller id). All find the same order, so of vehicles that conflict one leaves in a step, but for those that
-/// accelerate harder. If several did, a step later each would be inside for the others, and three could form a ring.
+/// Whether the other vehicle leaves its place to wait before the own one, while both are outside: it can no longer stop
+/// there, or will not be able to after this step if it accelerates by `pull_away`, and it is nearer (at equal distance:
+/// has the smaller id). All drivers find the same order, so only one of the vehicles in conflict leaves per step,
+/// unless some accelerate harder. If several left at once, each would be inside for the others a step later, and three
+/// could form a ring.
 [[nodiscard]] inline bool leaves_first(map::Conflict const& conflict, ConflictUser const& other,
                                        ConflictAsker const& own, bool is_smaller) {
   auto const& user = other.user;
@@ -174,7 +171,7 @@ template <class View>
 /// Whether the own vehicle goes before `other`, where both can still stop before the zone, `own_way` and `way` [m]
 /// ahead of them. The first rule that applies decides:
 /// - One by one: where neither priorities nor lights say who goes first, a driver does not leave its place to wait in
-///   the step in which another one does that is nearer to its own (`leaves_first`).
+///   the same step as another driver that is nearer to its own (`leaves_first`).
 /// - First come, first served: where neither priorities nor lights say who goes first, a driver that stands at its line
 ///   goes before one that stopped there later or has yet to stop. With right before left alone, four drivers would wait
 ///   for each other again and again.

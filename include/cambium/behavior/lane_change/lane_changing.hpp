@@ -196,8 +196,8 @@ struct LaneChanging {
   }
 
  private:
-  /// Whether it may pass slower ones within its lane: not where lanes merge in, whose traffic counts as a whole. Those
-  /// beyond the corridor's end do not count.
+  /// Whether the driver may pass slower road users within its lane: not where other lanes merge in, because their
+  /// traffic counts as a whole. Merges beyond the corridor's end do not matter.
   template <class View>
   [[nodiscard]] static bool passes_in_lane(View const& view) {
     auto const& corridor = view.corridor();
@@ -212,6 +212,8 @@ struct LaneChanging {
   }
 
   static constexpr double infinite = std::numeric_limits<double>::infinity();
+  /// A vehicle that changes lanes passes road users slower than this, which stand or hardly move [m/s].
+  static constexpr double passed_below = 0.5;
 
   /// Goes on with the change that the vehicle is in when it enters.
   template <class View>
@@ -310,7 +312,8 @@ struct LaneChanging {
                                                                        std::optional<RoadUser> leader, bool leaves,
                                                                        Strictest<IdmLaw> ahead) {
     view.each_ahead({.merging = rules.merging}, [&](RoadUser const& next) {
-      if ((leader && next.agent == leader->agent && next.object == leader->object) || (leaves && next.speed < 0.5))
+      if ((leader && next.agent == leader->agent && next.object == leader->object) ||
+          (leaves && next.speed < passed_below))
         return;
       ahead.heed({next.gap, next.speed});
     });
@@ -342,7 +345,7 @@ struct LaneChanging {
     auto const& piece = corridor.pieces[at.piece];
     double const left = change.left, around = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
     auto const is_passed = [&](RoadUser const& n, double until) {  // the course leads around it
-      return n.speed < 0.5 && n.gap > until;
+      return n.speed < passed_below && n.gap > until;
     };
     Strictest<IdmLaw> ahead(law);
     if (change.target == at.corridor) {

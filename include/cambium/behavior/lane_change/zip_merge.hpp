@@ -116,8 +116,8 @@ struct ZipMerge {
 
   /// Counts the time at a standstill. A driver that has lost its patience and starts regains it only at driving speed.
   void wait(Memory& memory, double speed, double dt) const {
-    constexpr double stands = 0.3, drives = 5.0;  // [m/s]
-    if (speed < stands)
+    constexpr double creeps = 0.3, drives = 5.0;  // [m/s] who creeps in a queue waits as well
+    if (speed < creeps)
       memory.stood += static_cast<float>(dt);
     else if (memory.stood <= static_cast<float>(patience) || speed > drives)
       memory.stood = 0.0f;

@@ -5,15 +5,13 @@
 #include <limits>
 
 #include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/lanes/signals.hpp"
 
 namespace cambium {
-
-/// A vehicle slower than this counts as stopped [m/s].
-inline constexpr double standing_speed = 0.1;
 
 /// Whether a vehicle of `speed` [m/s] can stop within `distance` [m] by braking with `deceleration` [m/s^2]. A stopped
 /// vehicle always can.
@@ -66,6 +64,11 @@ inline constexpr double standing_speed = 0.1;
 }
 
 namespace detail {
+
+/// A vehicle slower than this at a junction or a merge has hardly begun to move, or is about to stop [m/s].
+inline constexpr double starting_speed = 2.5;
+/// Acceleration of a vehicle that leaves a junction or merges [m/s^2].
+inline constexpr double pull_away = 1.0;
 
 /// Highest speed [m/s] at position `s` [m] of a corridor from which a driver who brakes by `deceleration` [m/s^2]
 /// reaches every lower speed limit ahead 3 s early, because car following approaches a desired speed slowly; infinite

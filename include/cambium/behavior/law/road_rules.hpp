@@ -322,7 +322,8 @@ struct RoadRules {
  private:
   template <class View>
   CAMBIUM_NOINLINE [[nodiscard]] std::optional<Constraint> gap_before_merge(View const& view) const {
-    constexpr double pull_away = 1.0, room = 2.0, slow = 2.5;  // [m/s^2], [m], [m/s]
+    using detail::pull_away;
+    constexpr double room = 2.0;  // [m]
     double const s = view.place().s, front = s + view.shape().front, speed = std::max(0.0, view.state().speed);
     double merge = std::numeric_limits<double>::infinity();
     for (auto const& feeder : view.corridor().feeders)
@@ -332,7 +333,7 @@ struct RoadRules {
       return std::nullopt;
     auto const next = view.merging(merge, s);
     double const theirs = next ? next->speed : 0.0, highest = std::max(speed, theirs);
-    if (theirs < slow) return std::nullopt;
+    if (theirs < detail::starting_speed) return std::nullopt;
     double const time = time_to_cover(way, speed, pull_away, highest);
     double const slower = std::max(0.0, theirs - std::min(highest, speed + pull_away * time));
     double const gap = s - view.shape().rear - (next->s + next->front) + way - theirs * time;

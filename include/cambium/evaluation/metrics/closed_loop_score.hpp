@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "cambium/core/constants.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/evaluation/collision.hpp"
@@ -48,7 +49,8 @@ struct ClosedLoopScore {
     bool const collides = AtFaultCollision{}(world, slot);
     is_at_fault_ = is_at_fault_ || collides;
     is_off_road_ = is_off_road_ || OffRoad{}(world, slot);
-    is_close_ = is_close_ || (record.state.speed > 0.05 && TimeToCollision{}(world, slot) < least_time_to_collision);
+    is_close_ =
+        is_close_ || (record.state.speed > blameless_speed && TimeToCollision{}(world, slot) < least_time_to_collision);
     if (dt <= 0.0) return;
     duration_ += dt;
     double const way = record.state.speed * dt;

@@ -4,6 +4,7 @@
 
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/safety/rss_conformant.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/world/frame.hpp"
@@ -29,7 +30,7 @@ struct RssCompliance {
       ++steps_;
       double const acceleration = (record.state.speed - speed_) / dt;
       violations_ +=
-          has_to_brake_ && record.state.speed > standing_speed && acceleration > -rss.minimum_deceleration + rounding;
+          has_to_brake_ && record.state.speed > blameless_speed && acceleration > -rss.minimum_deceleration + rounding;
     }
     auto const view = world.truth(slot);
     has_to_brake_ = RssConformant<ConstantAcceleration>{{}, rss}.response(view, record.state, dt).brake;
@@ -45,8 +46,7 @@ struct RssCompliance {
   [[nodiscard]] int dangers() const { return dangers_; }  ///< frames in which it had to brake
 
  private:
-  static constexpr double standing_speed = 0.05;  // [m/s]
-  static constexpr double rounding = 1e-3;        // [m/s^2]
+  static constexpr double rounding = 1e-3;  // [m/s^2]
 
   double speed_ = 0.0;
   bool has_to_brake_ = false;

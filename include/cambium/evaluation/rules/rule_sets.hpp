@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "cambium/core/constants.hpp"
 #include "cambium/core/one_of.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/driving.hpp"
@@ -127,7 +128,7 @@ template <class Labels = RuleLabels<>>
 template <class Labels = RuleLabels<>>
 [[nodiscard]] std::vector<TrafficRule<Labels>> intersection_rules() {
   using Of = SignalAhead::Of;
-  constexpr double line = 3.0, stands = 0.1;  // [m], [m/s]
+  constexpr double line = 3.0;  // [m]
   Formula const stops("stop_ahead -> stop_ahead W (at_line & !moves)");
   return {
       {.name = "red_light",
@@ -141,7 +142,7 @@ template <class Labels = RuleLabels<>>
        .formula = stops && always(implies("!stop_ahead", weak_next(stops))),
        .labels = {{"stop_ahead", SignalAhead{.of = Of::stop_sign}},
                   {"at_line", SignalAhead{.of = Of::stop_sign, .distance = line}},
-                  {"moves", Exceeds<Progress>{.threshold = stands}}}},
+                  {"moves", Exceeds<Progress>{.threshold = standing_speed}}}},
       {.name = "give_way",
        .summary = "does not enter a conflict where a vehicle with the right of way is due",
        .source = "StVO sections 8 (2) and 9 (3); Maierhofer et al. 2022",

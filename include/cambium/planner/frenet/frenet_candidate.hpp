@@ -116,7 +116,7 @@ struct FrenetCandidate {
       motion.bend = d.acceleration;
     } else if (time < duration) {
       auto const d = across.at(t);
-      constexpr double slowest = 0.1;  // [m/s]
+      constexpr double slowest = 0.1;  // [m/s] below it the slope over the way is that of this speed
       double const v = std::max(s.speed, slowest);
       motion.offset = d.position;
       motion.slope = d.speed / v;
@@ -165,10 +165,10 @@ struct FrenetTarget {
 /// `fastest` [m/s]; else the first limit that it violates.
 [[nodiscard]] inline FrenetVerdict drivable(FrenetLimits const& limits, CourseMotion<double> const& course,
                                             FrenetMotion<double> const& frenet, double fastest) {
-  constexpr double standing = -0.02;  // [m/s], allows for rounding
+  constexpr double rounding = -0.02;  // [m/s] of the speed of a vehicle that stands
   if (!std::isfinite(course.speed) || !std::isfinite(course.acceleration) || !std::isfinite(course.curvature))
     return FrenetVerdict::not_finite;
-  if (frenet.speed < standing) return FrenetVerdict::reverses;
+  if (frenet.speed < rounding) return FrenetVerdict::reverses;
   if (course.speed > fastest) return FrenetVerdict::speed;
   double const across = course.speed * course.speed * std::abs(course.curvature);
   if (course.acceleration < limits.lowest_acceleration || course.acceleration > limits.highest_acceleration ||

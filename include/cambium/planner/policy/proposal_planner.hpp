@@ -376,7 +376,7 @@ struct ProposalPlanner {
   }
 
   [[nodiscard]] SearchProblem choose(Workspace& workspace) const {
-    constexpr double standing = 0.1;  // [m]
+    constexpr double least_progress = 0.1;  // [m] proposals that get no farther all stand
     auto& proposals = workspace.proposals;
     double farthest = 0.0;
     for (auto const& p : proposals)
@@ -385,7 +385,7 @@ struct ProposalPlanner {
     workspace.best = 0;
     for (std::size_t i = 0; i < proposals.size(); ++i) {
       auto& p = proposals[i];
-      double const progress = farthest > standing ? std::clamp(p.progress / farthest, 0.0, 1.0) : 1.0;
+      double const progress = farthest > least_progress ? std::clamp(p.progress / farthest, 0.0, 1.0) : 1.0;
       double const sum = scoring.progress * progress + scoring.time_to_collision * p.time_to_collision +
                          scoring.speed_limit * p.speed_limit + scoring.comfort * p.comfort + scoring.route * p.route;
       p.score = (p.collides || p.leaves_road ? 0.0 : sum / weights) + p.terms;

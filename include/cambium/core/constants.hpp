@@ -1,0 +1,17 @@
+#pragma once
+
+/// Quantities of traffic that several rooms need. What one model chooses for itself stands with that model.
+namespace cambium {
+
+/// A vehicle slower than this counts as stopped, for drivers and for the rules of the road [m/s]. SUMO counts a slower
+/// vehicle as halting.
+inline constexpr double standing_speed = 0.1;
+
+/// A vehicle slower than this counts as stopped where a metric asks whether it is to blame [m/s]; as in the at-fault
+/// collisions of nuPlan's metrics (second-hand). It is below `standing_speed`, so that creeping into somebody counts.
+inline constexpr double blameless_speed = 0.05;
+
+/// Distance between the axles of `geometry::car` [m]: that of a vehicle that says nothing else.
+inline constexpr double car_wheel_base = 2.7;
+
+}  // namespace cambium
