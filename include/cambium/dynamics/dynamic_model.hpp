@@ -2,13 +2,16 @@
 
 #include <concepts>
 
+#include "cambium/core/constants.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/core/state.hpp"
 
 namespace cambium {
 
 /// A vehicle model: how inputs change a state. A model has
-///   - `State`, with the fields of `BasicState` and maybe more; `add_scaled(state, derivative, h)` must exist for it;
+///   - `State`, with the fields of `BasicState` and maybe more, all of them described; or with an `add_scaled(state,
+///     derivative, h)` of its own;
 ///   - `derivative`, pure: no allocation, no hidden state;
 ///   - `limited`, which restricts an input to what the vehicle can do in its state;
 ///   - `input`, which translates a driver's action (acceleration, steering angle) to an input within the same limits;
@@ -24,13 +27,14 @@ concept DynamicModel = std::copyable<M> && MotionState<typename M::State> && std
   { add_scaled(x, x, h) } -> std::same_as<typename M::State>;
 };
 
-/// `state + h * derivative`, field by field; `h` in [s].
-template <class Scalar>
-[[nodiscard]] BasicState<Scalar> add_scaled(BasicState<Scalar> const& state, BasicState<Scalar> const& derivative,
-                                            double h) {
-  auto const s = Scalar(h);
-  return {state.time + s * derivative.time, state.x + s * derivative.x, state.y + s * derivative.y,
-          state.heading + s * derivative.heading, state.speed + s * derivative.speed};
+/// `state + h * derivative`, for each field that the state describes; `h` in [s].
+template <MotionState S>
+requires Described<S>
+[[nodiscard]] S add_scaled(S const& state, S const& derivative, double h) {
+  auto const s = decltype(S::time)(h);
+  S sum;
+  for_each_parameter<S>([&](auto const& of) { sum.*of.field = state.*of.field + s * derivative.*of.field; });
+  return sum;
 }
 
 /// Distance from the reference point forward to the steered axle [m]: the model's `wheel_base`, a field or a function;
@@ -42,7 +46,7 @@ template <class M>
   else if constexpr (requires { double{model.wheel_base}; })
     return model.wheel_base;
   else
-    return 2.7;
+    return car_wheel_base;
 }
 
 /// The action that a driver carried out after `asked` was translated to `input`: the input itself if it consists of an

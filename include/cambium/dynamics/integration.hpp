@@ -71,9 +71,9 @@ template <bool euler = false, DynamicModel Model>
                                           double dt) {
   x.speed = std::max(0.0, x.speed);
   if constexpr (requires { double{model.response_time}; }) {
-    auto const steps = static_cast<int>(std::ceil(dt / model.response_time - 1e-9));
-    for (int i = 1; i < steps; ++i) x = detail::drive_step<euler>(model, x, action, dt / steps);
-    return detail::drive_step<euler>(model, x, action, dt / std::max(1, steps));
+    int const steps = std::max(1, static_cast<int>(std::ceil(dt / model.response_time - 1e-9)));
+    for (int i = 0; i < steps; ++i) x = detail::drive_step<euler>(model, x, action, dt / steps);
+    return x;
   } else {
     return detail::drive_step<euler>(model, x, action, dt);
   }

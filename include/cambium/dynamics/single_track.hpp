@@ -67,7 +67,7 @@ struct SingleTrack {
   using State = cambium::State;
   using Input = SingleTrackInput<double>;
 
-  double wheel_base = 2.7;
+  double wheel_base = car_wheel_base;
   double steering_limit = 0.6;
   double lowest_acceleration = -8.0;
   double highest_acceleration = 4.0;

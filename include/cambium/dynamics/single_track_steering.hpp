@@ -31,14 +31,6 @@ struct BasicSteeringState {
 };
 
 template <class Scalar>
-[[nodiscard]] BasicSteeringState<Scalar> add_scaled(BasicSteeringState<Scalar> const& a,
-                                                    BasicSteeringState<Scalar> const& derivative, double h) {
-  auto const s = Scalar(h);
-  return {a.time + s * derivative.time,       a.x + s * derivative.x,         a.y + s * derivative.y,
-          a.heading + s * derivative.heading, a.speed + s * derivative.speed, a.steering + s * derivative.steering};
-}
-
-template <class Scalar>
 struct SteeringRateInput {
   Scalar acceleration{};   ///< [m/s^2]
   Scalar steering_rate{};  ///< [rad/s]
@@ -51,7 +43,7 @@ struct SingleTrackSteering {
   using State = BasicSteeringState<double>;
   using Input = SteeringRateInput<double>;
 
-  double wheel_base = 2.7;
+  double wheel_base = car_wheel_base;
   double steering_limit = 0.6;
   double steering_rate_limit = 0.8;
   double response_time = 0.1;

@@ -32,19 +32,6 @@ struct BasicAcceleratedState {
   friend bool operator==(BasicAcceleratedState const&, BasicAcceleratedState const&) = default;
 };
 
-template <class Scalar>
-[[nodiscard]] BasicAcceleratedState<Scalar> add_scaled(BasicAcceleratedState<Scalar> const& a,
-                                                       BasicAcceleratedState<Scalar> const& derivative, double h) {
-  auto const s = Scalar(h);
-  return {a.time + s * derivative.time,
-          a.x + s * derivative.x,
-          a.y + s * derivative.y,
-          a.heading + s * derivative.heading,
-          a.speed + s * derivative.speed,
-          a.acceleration + s * derivative.acceleration,
-          a.lateral_acceleration + s * derivative.lateral_acceleration};
-}
-
 /// Jerk, the rate of change of the acceleration vector, in the map frame.
 template <class Scalar>
 struct JerkInput {
@@ -65,7 +52,7 @@ struct TripleIntegrator {
 
   double jerk_limit = 10.0;
   double response_time = 0.2;
-  double wheel_base = 2.7;
+  double wheel_base = car_wheel_base;
   double lowest_acceleration = -8.0;
   double highest_acceleration = 4.0;
   double lateral_acceleration_limit = 8.0;
