@@ -3,11 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <vector>
 
-#include "../support/maps.hpp"
-#include "cambium/cambium.hpp"
+#include "lane_traffic_fixtures.hpp"
 
-namespace cb = cambium;
+using namespace lane_traffic;
 
 TEST_CASE("presets of pedestrians and cyclists are valid; a cyclist brakes no harder than its bicycle can") {
   using namespace cb::presets;
@@ -50,19 +50,13 @@ TEST_CASE_TEMPLATE("a temperament makes a whole driver, whatever the model", Dri
   Driver const timid = presets::timid<Driver>(), normal = presets::normal<Driver>(),
                hasty = presets::aggressive<Driver>();
   for (auto const& driver : {timid, normal, hasty}) CHECK_NOTHROW(cb::check_parameters(driver));
-  auto const rules = [](auto const& d) -> cb::RoadRules const& {
-    if constexpr (requires { d.nominal; })
-      return d.nominal.rules;
-    else
-      return d.rules;
-  };
-  CHECK(rules(timid).lateral_acceleration < rules(normal).lateral_acceleration);
-  CHECK(rules(hasty).lateral_acceleration > rules(normal).lateral_acceleration);
-  CHECK(rules(hasty).late_at_red > 0.0);
+  if constexpr (requires { hasty.nominal; })
+    CHECK(hasty.nominal.rules.late_at_red == 1.0);
+  else
+    CHECK(hasty.rules.late_at_red == 1.0);
   // On a motorway with a slow leader, the hastier one keeps less time headway.
   auto const headway = [](Driver const& driver) {
-    cb::World<cb::BehaviorSet<DRIVERS, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack> world(
-        support::straight_road(1, 5000.0));
+    Traffic<DRIVERS, cb::ConstantAcceleration> world(support::straight_road(1, 5000.0));
     world.add({.position = {100, -1.75}, .speed = 20.0, .behavior = cb::ConstantAcceleration{}});
     auto const id = world.add({.position = {20, -1.75}, .speed = 20.0, .behavior = driver});
     for (int k = 0; k < 600; ++k) REQUIRE(world.step(0.2));
@@ -73,21 +67,40 @@ TEST_CASE_TEMPLATE("a temperament makes a whole driver, whatever the model", Dri
   CHECK(middle > shortest + 0.2);
 }
 
-TEST_CASE("an aggressive driver changes lanes for less, and drives faster than the limit") {
+TEST_CASE("temperaments have the numbers that their description derives from the literature") {
+  auto const numbers = [](cb::Mobil const& d, cb::Intersection const& at) -> std::vector<double> {
+    return {d.politeness,
+            d.threshold,
+            d.changing.safe_deceleration,
+            d.changing.abort_deceleration,
+            d.rules.lateral_acceleration,
+            d.rules.safe_deceleration,
+            d.rules.merging_headway,
+            d.rules.late_at_red,
+            d.rules.speed_factor,
+            at.time_margin};
+  };
+  using namespace cb::presets;
+  CHECK(numbers(timid<cb::Mobil>(), timid<cb::Intersection>()) ==
+        std::vector{0.5, 0.3, 2.0, 2.5, 2.0, 4.0, 2.0, 0.0, 0.95, 2.0});
+  CHECK(numbers(normal<cb::Mobil>(), normal<cb::Intersection>()) ==
+        std::vector{0.2, 0.2, 4.0, 4.5, 3.0, 3.0, 1.0, 0.0, 1.0, 1.0});
+  CHECK(numbers(aggressive<cb::Mobil>(), aggressive<cb::Intersection>()) ==
+        std::vector{0.0, 0.1, 5.0, 5.5, 4.0, 2.0, 0.5, 1.0, 1.1, 0.6});
+  CHECK(timid<cb::Intersection>().idm.time_headway == timid().time_headway);
+  CHECK(timid<cb::IdmClassic>().exponent == timid().exponent);
+}
+
+TEST_CASE("an aggressive driver drives faster than the limit, a timid one slower") {
   namespace presets = cb::presets;
-  CHECK(presets::aggressive<cb::Mobil>().politeness < presets::timid<cb::Mobil>().politeness);
-  CHECK(presets::aggressive<cb::Mobil>().changing.safe_deceleration >
-        presets::timid<cb::Mobil>().changing.safe_deceleration);
   auto const speed = [](cb::IdmClassic driver) {
     driver.rules.obey_speed_limits = true;
     auto const map = support::own_map("intersection_4way.xodr");
-    cb::World<cb::BehaviorSet<cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack> world(map);
-    auto const lane = map->find_lane("1", 50.0, -2);
-    auto const pose = map->lane(lane).path.pose(1.0);
-    auto const id =
-        world.add({.position = pose.position(), .heading = pose.heading, .speed = 13.9, .behavior = driver});
+    Traffic<cb::IdmClassic> world(map);
+    auto const& lane = map->lane(map->find_lane("1", 50.0, -2));
+    auto const id = enter(world, lane, 1.0, {.speed = 13.9, .behavior = driver});
     for (int k = 0; k < 12; ++k) REQUIRE(world.step(0.2));
-    return world.state(id).speed / map->lane(lane).speed_limit_at(0.0);
+    return world.state(id).speed / lane.speed_limit_at(0.0);
   };
   CHECK(speed(presets::timid<cb::IdmClassic>()) < 0.99);
   CHECK(speed(presets::aggressive<cb::IdmClassic>()) > 1.01);

@@ -63,21 +63,22 @@ namespace cambium::presets {
           .lowest_acceleration = -8.0};
 }
 
-/// What a driver's temperament means for a whole driver. Car following as in the presets of the same name; politeness,
-/// threshold and safe braking of lane changes around the values of Kesting, Treiber, Helbing 2007 (politeness 0:
-/// egoistic, up to 0.5: cooperative; 0.1 m/s^2; 4 m/s^2); speeds around the limit as in SUMO, whose drivers' speed
-/// factor is normal(1, 0.1). The other numbers, and where in these ranges a temperament lies, are ours.
+/// What a driver's temperament means for a whole driver; the defaults are those of `normal`. Car following as in the
+/// presets of the same name; politeness, threshold and safe braking of lane changes around the values of Kesting,
+/// Treiber, Helbing 2007 (politeness 0: egoistic, up to 0.5: cooperative; 0.1 m/s^2; 4 m/s^2); speeds around the limit
+/// as in SUMO, whose drivers' speed factor is normal(1, 0.1). The other numbers, and where in these ranges a
+/// temperament lies, are ours.
 struct Temperament {
-  IdmParameters idm{};
-  double politeness{};            ///< `BasicMobil::politeness` [-]
-  double threshold{};             ///< `BasicMobil::threshold` [m/s^2]
-  double lane_change_braking{};   ///< `LaneChanging::safe_deceleration`; 0.5 m/s^2 more abort one [m/s^2]
-  double lateral_acceleration{};  ///< `RoadRules::lateral_acceleration` [m/s^2]
-  double signal_braking{};        ///< `RoadRules::safe_deceleration`: higher, it stops at yellow more often [m/s^2]
-  double merging_headway{};       ///< `RoadRules::merging_headway` [s]
-  double late_at_red{};           ///< `RoadRules::late_at_red` [s]
-  double speed_factor{};          ///< `RoadRules::speed_factor` [-]
-  double time_margin{};           ///< `Intersection::time_margin` [s]
+  IdmParameters idm = kesting_2010_car();
+  double politeness = 0.2;            ///< `BasicMobil::politeness` [-]
+  double threshold = 0.2;             ///< `BasicMobil::threshold` [m/s^2]
+  double lane_change_braking = 4.0;   ///< `LaneChanging::safe_deceleration`; 0.5 m/s^2 more abort one [m/s^2]
+  double lateral_acceleration = 3.0;  ///< `RoadRules::lateral_acceleration` [m/s^2]
+  double signal_braking = 3.0;        ///< `RoadRules::safe_deceleration`: higher, it stops at yellow more often [m/s^2]
+  double merging_headway = 1.0;       ///< `RoadRules::merging_headway` [s]
+  double late_at_red = 0.0;           ///< `RoadRules::late_at_red` [s]
+  double speed_factor = 1.0;          ///< `RoadRules::speed_factor` [-]
+  double time_margin = 1.0;           ///< `Intersection::time_margin` [s]
 
   /// `driver` with this temperament: all of the above that it has, in what it wraps, too. The rest stays.
   template <class Driver>
@@ -86,7 +87,7 @@ struct Temperament {
     if constexpr (requires { driver.idm; })
       driver.idm = idm;
     else if constexpr (requires { {driver.desired_speed += idm.desired_speed}; } && HasIdmParameters<Driver>)
-      follow_as(driver);
+      follow_as(driver, idm);
     if constexpr (requires { driver.politeness; }) driver.politeness = politeness;
     if constexpr (requires { driver.threshold; }) driver.threshold = threshold;
     if constexpr (requires { driver.changing.abort_deceleration; }) {
@@ -103,34 +104,40 @@ struct Temperament {
     if constexpr (requires { driver.time_margin; }) driver.time_margin = time_margin;
     return driver;
   }
-
- private:
-  template <class Driver>
-  constexpr void follow_as(Driver& driver) const {
-    driver.desired_speed = idm.desired_speed;
-    driver.time_headway = idm.time_headway;
-    driver.minimum_gap = idm.minimum_gap;
-    driver.maximum_acceleration = idm.maximum_acceleration;
-    driver.comfortable_deceleration = idm.comfortable_deceleration;
-    driver.exponent = idm.exponent;
-    driver.lowest_acceleration = idm.lowest_acceleration;
-    driver.highest_acceleration = idm.highest_acceleration;
-  }
 };
 
 /// A whole driver of that temperament, such as `timid<Mobil>()`, `aggressive<HumanDriver<Intersection>>()`. Its desired
 /// speed is that of a motorway: set `obey_speed_limits` or another one elsewhere.
 template <class Driver>
 [[nodiscard]] constexpr Driver timid() {
-  return Temperament{timid(), 0.5, 0.3, 2.0, 2.0, 4.0, 2.0, 0.0, 0.95, 2.0}.template of<Driver>();
+  return Temperament{.idm = timid(),
+                     .politeness = 0.5,
+                     .threshold = 0.3,
+                     .lane_change_braking = 2.0,
+                     .lateral_acceleration = 2.0,
+                     .signal_braking = 4.0,
+                     .merging_headway = 2.0,
+                     .speed_factor = 0.95,
+                     .time_margin = 2.0}
+      .of<Driver>();
 }
 template <class Driver>
 [[nodiscard]] constexpr Driver normal() {
-  return Temperament{kesting_2010_car(), 0.2, 0.2, 4.0, 3.0, 3.0, 1.0, 0.0, 1.0, 1.0}.template of<Driver>();
+  return Temperament{}.of<Driver>();
 }
 template <class Driver>
 [[nodiscard]] constexpr Driver aggressive() {
-  return Temperament{aggressive(), 0.0, 0.1, 5.0, 4.0, 2.0, 0.5, 1.0, 1.1, 0.6}.template of<Driver>();
+  return Temperament{.idm = aggressive(),
+                     .politeness = 0.0,
+                     .threshold = 0.1,
+                     .lane_change_braking = 5.0,
+                     .lateral_acceleration = 4.0,
+                     .signal_braking = 2.0,
+                     .merging_headway = 0.5,
+                     .late_at_red = 1.0,
+                     .speed_factor = 1.1,
+                     .time_margin = 0.6}
+      .of<Driver>();
 }
 
 /// A cyclist, to be combined with `bicycle_dynamics`. The numbers are ours: 18 km/h, slightly below SUMO's default

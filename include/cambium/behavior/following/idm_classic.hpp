@@ -13,14 +13,14 @@ namespace cambium {
 struct IdmClassic {
   using Memory = RoadRules::Memory;
 
-  double desired_speed = 15.0;
-  double time_headway = 1.5;
-  double minimum_gap = 2.0;
-  double maximum_acceleration = 1.7;
-  double comfortable_deceleration = 1.67;
-  double exponent = 4.0;
-  double lowest_acceleration = -5.0;
-  double highest_acceleration = 8.0;
+  double desired_speed = IdmParameters{}.desired_speed;
+  double time_headway = IdmParameters{}.time_headway;
+  double minimum_gap = IdmParameters{}.minimum_gap;
+  double maximum_acceleration = IdmParameters{}.maximum_acceleration;
+  double comfortable_deceleration = IdmParameters{}.comfortable_deceleration;
+  double exponent = IdmParameters{}.exponent;
+  double lowest_acceleration = IdmParameters{}.lowest_acceleration;
+  double highest_acceleration = IdmParameters{}.highest_acceleration;
   double tolerance = 1e-4;
   RoadRules rules{};
 
@@ -48,14 +48,9 @@ static_assert(BehaviorModel<IdmClassic>);
 
 /// An `IdmClassic` with the given parameters, such as those in `presets`.
 [[nodiscard]] constexpr IdmClassic idm_classic(IdmParameters const& p) {
-  return {.desired_speed = p.desired_speed,
-          .time_headway = p.time_headway,
-          .minimum_gap = p.minimum_gap,
-          .maximum_acceleration = p.maximum_acceleration,
-          .comfortable_deceleration = p.comfortable_deceleration,
-          .exponent = p.exponent,
-          .lowest_acceleration = p.lowest_acceleration,
-          .highest_acceleration = p.highest_acceleration};
+  IdmClassic driver;
+  follow_as(driver, p);
+  return driver;
 }
 
 }  // namespace cambium

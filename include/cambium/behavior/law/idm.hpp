@@ -60,6 +60,19 @@ struct IdmParameters {
 };
 static_assert(HasIdmParameters<IdmParameters>);
 
+/// Gives `driver` the IDM parameters `idm`; whatever else it has stays.
+template <HasIdmParameters P>
+constexpr void follow_as(P& driver, IdmParameters const& idm) {
+  driver.desired_speed = idm.desired_speed;
+  driver.time_headway = idm.time_headway;
+  driver.minimum_gap = idm.minimum_gap;
+  driver.maximum_acceleration = idm.maximum_acceleration;
+  driver.comfortable_deceleration = idm.comfortable_deceleration;
+  driver.exponent = idm.exponent;
+  driver.lowest_acceleration = idm.lowest_acceleration;
+  driver.highest_acceleration = idm.highest_acceleration;
+}
+
 /// x to the power of `exponent`, without `pow` for IDM's usual 4.
 template <class Scalar>
 [[nodiscard]] Scalar idm_power(Scalar x, double exponent) {
@@ -168,8 +181,6 @@ template <class Scalar>
 class IdmStep {
  public:
   IdmStep(IdmTerms<Scalar> const& terms, Scalar leader_speed) : terms_(terms), leader_speed_(leader_speed) {}
-
-  IdmStep(IdmTerms<Scalar>&&, Scalar) = delete;
 
   [[nodiscard]] IdmTerms<Scalar> const& terms() const { return terms_; }
   [[nodiscard]] Scalar leader_speed() const { return leader_speed_; }
