@@ -4,7 +4,6 @@
 #include <type_traits>
 
 #include "cambium/behavior/view.hpp"
-#include "cambium/core/one_of.hpp"
 
 namespace cambium {
 

@@ -14,19 +14,14 @@
 namespace cambium {
 
 namespace detail {
-/// Plans with a workspace in a function of its own: a flattened step must not inline a whole search.
-template <class B, class View, class Memory, class Workspace>
+/// Plans in a function of its own, with the workspace if there is one. A step that inlined every behaviour of a large
+/// set would take more than twice as long to compile and run no faster; a flattened one must not inline a whole search.
+template <class B, class View, class Memory, class... Workspace>
 CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, Memory& memory, double dt,
-                                                     Workspace& workspace) {
-  return behavior.plan(view, memory, dt, workspace);
+                                                     Workspace&... workspace) {
+  return behavior.plan(view, memory, dt, workspace...);
 }
-/// Plans in a function of its own. A step that inlined every behaviour of a large set would take more than twice as
-/// long to compile and run no faster.
-template <class B, class View, class Memory>
-CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, Memory& memory, double dt) {
-  return behavior.plan(view, memory, dt);
-}
-/// The same, flattened.
+/// Plans in a flattened function of its own.
 template <class B, class View, class Memory>
 CAMBIUM_NOINLINE CAMBIUM_FLATTEN [[nodiscard]] Plan<View> plan_flattened(B const& behavior, View const& view,
                                                                          Memory& memory, double dt) {

@@ -3,7 +3,6 @@
 #include <concepts>
 #include <type_traits>
 
-#include "cambium/core/one_of.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "cambium/core/parameters.hpp"
-#include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/execution_model.hpp"
 #include "cambium/geometry/angle.hpp"
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <string>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/described.hpp"
-#include "cambium/core/distributions.hpp"
 
 namespace cambium {
 
@@ -24,7 +22,7 @@ concept HypothesisModel = BehaviorModel<B> && requires(B const driver, MemoryOf<
 
 /// A `Driver` by IDM whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
 /// about another driver, see `Mcts`. The assumed headway is its memory, which a search draws anew. With `Intersection`
-/// as the driver, those about whom it learns obey the rules of junctions.
+/// as the driver, the drivers about whom it learns obey the rules of junctions.
 template <BehaviorModel Driver>
 struct HeadwayHypotheses {
   static_assert(

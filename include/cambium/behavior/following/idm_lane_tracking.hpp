@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/following/adaptive_cruise_control.hpp"
@@ -94,7 +93,7 @@ struct IdmLaneTracking {
   template <class View>
   [[nodiscard]] Plan<View> drive_along(View const& view, IdmParameters const& p, Constraint leader, Memory& memory,
                                        double dt) const {
-    constexpr double gentle = 0.3;  // [m] it moves aside as if it were no farther from where it wants to be
+    constexpr double gentle = 0.3;  // [m] the largest offset by which it steers when it moves aside
     auto const& model = view.dynamics();
     auto const& line = view.corridor().center;
     double const wheel_base = wheel_base_of(model);

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
-#include <optional>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/law/idm.hpp"

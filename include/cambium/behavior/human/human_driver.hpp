@@ -166,19 +166,15 @@ struct HumanDriver {
             .rate_error = rate_error * static_cast<double>(memory.rate_error)};
   }
 
-  /// Acceleration [m/s^2] over the first `dt` [s] of a plan made on `view`; 0 for a plan that is too short.
-  template <class View>
-  [[nodiscard]] static double acceleration_of(Plan<View> const& plan, View const& view, double dt) {
-    auto const end = InterpolateExecution{}.execute(plan, view.state(), view.dynamics(), view.time() + dt);
-    return end.valid ? (end.state.speed - std::max(0.0, view.state().speed)) / dt : 0.0;
-  }
-
-  /// Acceleration [m/s^2] that the nominal behaviour plans on the estimate.
+  /// Acceleration [m/s^2] that the nominal behaviour plans on the estimate for the next `dt` [s]; 0 if its plan is too
+  /// short.
   template <class View>
   [[nodiscard]] double planned(View const& view, MemoryOf<Nominal> memory, HumanEstimate const& estimate,
                                double dt) const {
     HumanView<View> const seen(view, estimate);
-    return acceleration_of(nominal.plan(seen, memory, dt), seen, dt);
+    auto const plan = nominal.plan(seen, memory, dt);
+    auto const end = InterpolateExecution{}.execute(plan, seen.state(), seen.dynamics(), seen.time() + dt);
+    return end.valid ? (end.state.speed - std::max(0.0, seen.state().speed)) / dt : 0.0;
   }
 
   /// The acceleration decided on an estimate of the others [m/s^2]: the one that they demand; if they demand none, the

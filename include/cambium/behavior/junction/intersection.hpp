@@ -31,16 +31,15 @@ namespace cambium {
 /// that goes first (`detail::goes_first`) has the zone if the two times in it are less than `time_margin` apart. The
 /// strongest claim bounds the step so that the vehicle can stop at its line.
 ///
-/// The driver enters a junction when all its conflicts are its own and there is room behind them (after 40 s more than
-/// its patience, even without room). As soon as it has
-/// left its place to wait, maybe well before the edge of the junction, it goes before all vehicles that are still
-/// outside. Of those that leave their places in the same step, the nearest goes (`detail::leaves_first`). At green it
-/// also enters to turn left, and waits inside for oncoming traffic. It stops at red lights
-/// (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor lights say who goes
-/// first, those who have stopped go in the order in which they came. In a deadlock one driver after the other loses its
-/// `patience` and goes. A driver that has waited 40 s more for others who go first drives up to the conflict: then it
-/// is inside the junction, and those who can still stop let it go, so that nobody starves. Static objects count where
-/// they extend into the own lane, as for `IdmClassic`.
+/// The driver enters a junction when it may go first in all its conflicts and there is room behind them; after 40 s
+/// more than its patience, even without room. Once it has left its place to wait, maybe well before the edge of the
+/// junction, it goes before all vehicles that are still outside. Of those that leave their places in the same step, the
+/// nearest goes (`detail::leaves_first`). At green it also enters to turn left, and waits inside for oncoming traffic.
+/// It stops at red lights (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor
+/// lights say who goes first, those who have stopped go in the order in which they came. In a deadlock one driver after
+/// the other loses its `patience` and goes. A driver that has waited 40 s more for others who go first drives up to the
+/// conflict: then it is inside the junction, and those who can still stop let it go, so that nobody waits forever.
+/// Static objects count where they extend into the own lane, as for `IdmClassic`.
 ///
 /// Guarantee: as long as the vehicle can stop before a conflict, it does not enter while another vehicle is inside or
 /// can no longer stop. Of two vehicles that can both stop, one goes first, or both until one of them can no longer

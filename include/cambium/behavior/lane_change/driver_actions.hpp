@@ -2,17 +2,15 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/lane_change/macro_actions.hpp"
-#include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
 
 namespace detail {
-/// A model with its defaults, but that it slows down for bends if it can.
+/// A model with its defaults that also slows down for bends, if it can.
 template <class Model>
 [[nodiscard]] Model slowing_for_bends() {
   Model model{};
@@ -23,9 +21,9 @@ template <class Model>
 
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
-/// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap; and
-/// close behind one who stands it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`), unless
-/// somebody is about on foot. By default both slow down for bends.
+/// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap. Close
+/// behind a road user that stands, it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`), unless
+/// pedestrians are in the world. By default both slow down for bends.
 template <BehaviorModel Driver>
 struct DriverActions {
   static constexpr std::uint8_t drive = MacroActions::nothing;  ///< chosen instead of the number of a macro action

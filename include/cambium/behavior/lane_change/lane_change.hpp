@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <optional>
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
@@ -183,7 +181,7 @@ struct LaneChangeCourse {
     return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
   }
 
-  static constexpr double slow = 4.0;  ///< highest speed of one who stands or is about to [m/s]
+  static constexpr double slow = 4.0;  ///< a road user up to this speed stands or is about to [m/s]
 };
 
 namespace detail {
@@ -199,17 +197,14 @@ template <class View>
   LateralCourse<double> const start{at.lateral - offset, stretch * (sin / cos), change.bend};
   double const along = motion.distance * cos / stretch;
   auto const course = converge(start, static_cast<double>(change.left), along);
-  Plan<View> plan;
   typename View::State next = view.state();
   next.time = view.time() + dt;
   place_on_lane(corridor, at.s + along, offset + course.offset, geometry::arc_tangent(course.slope / stretch),
                 at.segment, next);
   next.speed = motion.speed;
-  plan.trajectory.push_back(next);
-  plan.action.acceleration = (motion.speed - view.state().speed) / dt;
   change.left -= static_cast<float>(along);
   change.bend = static_cast<float>(course.bend);
-  return plan;
+  return plan_to(view, next, dt);
 }
 
 }  // namespace detail

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <initializer_list>
 #include <iterator>
-#include <limits>
 #include <optional>
 #include <string>
 
@@ -49,17 +48,8 @@ struct MacroAction {
 
 /// The name, as in messages and tables.
 [[nodiscard]] constexpr char const* to_string(MacroAction::Kind kind) {
-  switch (kind) {
-    case MacroAction::Kind::stay:
-      return "stay";
-    case MacroAction::Kind::change_left:
-      return "change_left";
-    case MacroAction::Kind::change_right:
-      return "change_right";
-    case MacroAction::Kind::keep_gap:
-      return "keep_gap";
-  }
-  return "unknown";
+  constexpr char const* names[] = {"stay", "change_left", "change_right", "keep_gap"};
+  return names[static_cast<std::size_t>(kind)];
 }
 
 /// Drives by one of a few manoeuvres along its lanes, within its `rules`: speed limits, bends and signals bound a

@@ -108,7 +108,7 @@ CAMBIUM_NOINLINE [[nodiscard]] Drift drift_of(View const& view, double slope) {
   return {at.corridor, at.lateral + side * (leaves ? std::min(stop, room) : stop)};
 }
 
-/// Where a vehicle adrift gets with the motion that follows the lane to `next`, see `plan_into_lane`.
+/// The state of a vehicle adrift after the motion that follows the lane to `next`, see `plan_into_lane`.
 template <class View>
 CAMBIUM_NOINLINE [[nodiscard]] typename View::State drift_on(View const& view, LongitudinalMotion<double> const& motion,
                                                              typename View::State next, bool& adrift) {

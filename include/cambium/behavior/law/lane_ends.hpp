@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 
 #include "cambium/behavior/view.hpp"
@@ -53,18 +52,18 @@ template <class View>
   return lane_end(view, number, piece) - view.road().corridors[number].pieces[piece].begin - along;
 }
 
-/// Number of lanes between a piece of a lane corridor and the nearest one on the left (right) that goes more than
-/// `remaining` [m] beyond the place `along` [m] after the piece's begin; 0 if there is none.
-template <class View>
-[[nodiscard]] int lanes_to_go(View const& view, CorridorId number, PieceId piece, double along, double remaining,
-                              bool left) {
+/// Number of lanes to cross from a piece of lane corridor `number` to the nearest one on the left (right) of which
+/// `fits(corridor, piece)`; 0 if there is none.
+template <class Fits>
+[[nodiscard]] int lanes_until(map::RoadCorridor const& road, CorridorId number, PieceId piece, bool left,
+                              Fits const& fits) {
   constexpr int most = 16;
   for (int lanes = 1; lanes <= most; ++lanes) {
-    auto const& at = view.road().corridors[number].pieces[piece];
+    auto const& at = road.corridors[number].pieces[piece];
     number = at.beside(left);
     piece = at.piece_beside(left);
     if (number == none<CorridorId>) return 0;
-    if (remaining_from(view, number, piece, along) > remaining + 1.0) return lanes;
+    if (fits(number, piece)) return lanes;
   }
   return 0;
 }
@@ -86,8 +85,11 @@ CAMBIUM_NOINLINE [[nodiscard]] LanesToCross lanes_to_cross(View const& view, Cor
   for (auto p = piece; index_of(p) < pieces.size(); ++p) {
     double const along = p == piece ? s - pieces[p].begin : 0.0, remaining = end - pieces[p].begin - along;
     if (!(remaining > 0.0)) break;
-    int const left = detail::lanes_to_go(view, number, p, along, remaining, true);
-    int const right = detail::lanes_to_go(view, number, p, along, remaining, false);
+    auto const goes_further = [&](CorridorId beside, PieceId there) {
+      return detail::remaining_from(view, beside, there, along) > remaining + 1.0;
+    };
+    int const left = detail::lanes_until(view.road(), number, p, true, goes_further);
+    int const right = detail::lanes_until(view.road(), number, p, false, goes_further);
     if (left == 0 && right == 0) continue;
     bool const is_left = right == 0 || (left != 0 && left <= right);
     return is_left ? LanesToCross{left, 0} : LanesToCross{0, right};
@@ -128,20 +130,10 @@ template <class View>
 /// Number of lane changes from `piece` of lane corridor `number` to a corridor that reaches the destination; 0 if none
 /// can be reached from there. O(lanes).
 [[nodiscard]] inline int lanes_to_destination(map::RoadCorridor const& road, CorridorId number, PieceId piece) {
-  constexpr int most = 16;
   if (road.corridors[number].reaches_destination) return 0;
-  for (bool const left : {true, false}) {
-    auto corridor = number;
-    auto at = piece;
-    for (int lanes = 1; lanes <= most; ++lanes) {
-      auto const& here = road.corridors[corridor].pieces[at];
-      corridor = here.beside(left);
-      at = here.piece_beside(left);
-      if (corridor == none<CorridorId>) break;
-      if (road.corridors[corridor].reaches_destination) return lanes;
-    }
-  }
-  return 0;
+  auto const reaches = [&](CorridorId beside, PieceId) { return road.corridors[beside].reaches_destination; };
+  int const left = detail::lanes_until(road, number, piece, true, reaches);
+  return left != 0 ? left : detail::lanes_until(road, number, piece, false, reaches);
 }
 
 }  // namespace cambium

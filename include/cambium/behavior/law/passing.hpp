@@ -30,8 +30,8 @@ namespace detail {
   return std::max(5.0 + shape.front, speed);
 }
 
-/// Where a vehicle gets that keeps its lane and approaches `offset` [m] to the left of its middle, with the motion that
-/// follows the lane to `next`.
+/// The state of a vehicle that keeps its lane and approaches `offset` [m] to the left of its middle, after the motion
+/// that follows the lane to `next`.
 template <class View>
 [[nodiscard]] typename View::State move_aside(View const& view, double offset, LongitudinalMotion<double> const& motion,
                                               typename View::State next) {
@@ -69,8 +69,8 @@ template <class View>
 /// The half of something that lies towards a `side` (1: left).
 [[nodiscard]] constexpr double towards(double side, double left, double right) { return side > 0.0 ? left : right; }
 
-/// How far from the middle of the lane [m] a vehicle may drive within the next `distance` [m]: where ways conflict no
-/// farther than the bodies reach for which the map found the conflicts; infinite elsewhere. O(log conflicts + near).
+/// How far from the middle of the lane [m] a vehicle may drive within the next `distance` [m]: where ways conflict, no
+/// farther than the bodies reach for which the map computed them; infinite elsewhere. O(log conflicts + near).
 template <class View>
 [[nodiscard]] double widest_offset(View const& view, double distance) {
   auto const& conflicts = view.corridor().conflicts;
@@ -106,9 +106,9 @@ struct PassingOffset {
 };
 
 /// Where a vehicle passes `other` within its lane, with at least `clearance` [m] between the bodies, on the inner
-/// `side` (see `inner_side`); none if the lane has not that much room, or if the other reaches over the border of the
-/// lane, because it may be about to leave or enter it. Expects the other to move on to the side for 3 s. A vehicle that
-/// does not pass yet (`begins`) needs 0.1 m more. O(1) near the vehicle.
+/// `side` (see `inner_side`); none if the lane does not have that much room, or if the other reaches over the border of
+/// the lane, because it may be about to leave or enter it. Expects the other to move on to the side for 3 s. A vehicle
+/// that does not pass yet (`begins`) needs 0.1 m more. O(1) near the vehicle.
 template <class View>
 [[nodiscard]] std::optional<PassingOffset> offset_to_pass(View const& view, RoadUser const& other, double clearance,
                                                           double side, bool begins) {
@@ -133,7 +133,7 @@ template <class View>
   return PassingOffset{least, std::max(0.0, std::min(away + more, most))};
 }
 
-/// Whether a vehicle that approaches where it passes will leave the clearance when it comes up to `other`, even if it
+/// Whether a vehicle that moves over to pass will leave the clearance by the time it comes up to `other`, even if it
 /// goes 2 m/s faster until then.
 template <class View>
 [[nodiscard]] bool is_aside_in_time(View const& view, RoadUser const& other, double speed, PassingOffset const& offset,

@@ -223,19 +223,15 @@ struct Pedestrian {
 
   template <class View>
   [[nodiscard]] Plan<View> plan_to(View const& view, Walk const& walk, double dt) const {
-    constexpr double standing = 0.02;  // [m/s] a slower pedestrian does not turn
-    Plan<View> plan;
+    constexpr double turning = 0.02;  // [m/s] a slower pedestrian keeps its heading: its velocity points anywhere
     auto next = view.state();
-    double const before = next.speed;
     next.time = view.time() + dt;
     next.x = walk.position.x;
     next.y = walk.position.y;
     next.speed = walk.velocity.norm();
-    if (next.speed > standing)
+    if (next.speed > turning)
       next.heading += geometry::angle_difference(std::atan2(walk.velocity.y, walk.velocity.x), next.heading);
-    plan.action.acceleration = (next.speed - before) / dt;
-    plan.trajectory.push_back(next);
-    return plan;
+    return detail::plan_to(view, next, dt);
   }
 };
 static_assert(BehaviorModel<Pedestrian>);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/course.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
