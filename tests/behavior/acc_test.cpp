@@ -6,13 +6,11 @@
 #include <cmath>
 #include <vector>
 
-#include "cambium/cambium.hpp"
+#include "lane_traffic_fixtures.hpp"
 
-namespace cb = cambium;
+using namespace lane_traffic;
 
 namespace {
-
-double between(double low, double high, cb::RandomStream& random) { return low + (high - low) * cb::uniform01(random); }
 
 cb::IdmParameters any_driver(cb::RandomStream& random) {
   return {.desired_speed = between(15, 40, random),

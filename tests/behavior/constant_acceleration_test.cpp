@@ -45,7 +45,8 @@ TEST_CASE("two halves of a step equal the whole step, also across kinks") {
     }
 }
 
-TEST_CASE("in a world it drives the computed distance along its lane, ignores others and reports its acceleration") {
+TEST_CASE(
+    "in a world a vehicle drives the computed distance along its lane, ignores others and reports its acceleration") {
   Sim world(straight_road(1, 400, 0.005));
   auto const id =
       world.add({.position = {5, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{.acceleration = 1.0}});
@@ -71,7 +72,7 @@ TEST_CASE("a deceleration that stops within the step is reported as the average 
   CHECK(world.record(id).action.acceleration == doctest::Approx(-2.0));
 }
 
-TEST_CASE("it ends a lane change that its heading shows, and keeps its offset if it is aligned") {
+TEST_CASE("a vehicle ends the lane change that its heading shows, and keeps its offset if it is aligned") {
   for (double const heading : {0.05, -0.05, 0.0}) {
     CAPTURE(heading);
     Sim world(straight_road(3, 800.0));

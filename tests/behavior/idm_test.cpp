@@ -48,19 +48,17 @@ namespace {
 
 /// A twin of `idm_motion` by 20000 explicit midpoint steps.
 cb::LongitudinalMotion<double> fine_motion(cb::IdmClassic const& p, double v, double gap, double leader, double dt) {
-  auto const run = [&](int n) {
-    double x = 0, speed = v;
-    double const h = dt / n;
-    for (int i = 0; i < n; ++i) {
-      double const a1 = cb::idm_acceleration(p, speed, gap + leader * (h * i) - x, leader);
-      double const middle = std::max(0.0, speed + a1 * h / 2);
-      double const a2 = cb::idm_acceleration(p, middle, gap + leader * (h * (i + 0.5)) - (x + speed * h / 2), leader);
-      x += middle * h;
-      speed = std::max(0.0, speed + a2 * h);
-    }
-    return cb::LongitudinalMotion<double>{x, speed};
-  };
-  return run(20000);
+  constexpr int n = 20000;
+  double const h = dt / n;
+  double x = 0, speed = v;
+  for (int i = 0; i < n; ++i) {
+    double const a1 = cb::idm_acceleration(p, speed, gap + leader * (h * i) - x, leader);
+    double const middle = std::max(0.0, speed + a1 * h / 2);
+    double const a2 = cb::idm_acceleration(p, middle, gap + leader * (h * (i + 0.5)) - (x + speed * h / 2), leader);
+    x += middle * h;
+    speed = std::max(0.0, speed + a2 * h);
+  }
+  return {x, speed};
 }
 
 /// A value of the range, usually log-uniform, sometimes one of its ends.
@@ -120,10 +118,7 @@ TEST_CASE("a follower stops behind a standing leader, stands, and starts when th
   }
   CHECK(v < 0.02);
   CHECK(gap == doctest::Approx(p.minimum_gap).epsilon(0.05));
-  for (int i = 0; i < 10; ++i) {
-    auto const m = cb::idm_motion(p, v, gap += 5.0, 5.0, 0.2, 1e-4);
-    v = m.speed;
-  }
+  for (int i = 0; i < 10; ++i) v = cb::idm_motion(p, v, gap += 5.0, 5.0, 0.2, 1e-4).speed;
   CHECK(v > 1.0);
 }
 

@@ -1,12 +1,16 @@
 #pragma once
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include <doctest/doctest.h>
+
 #include "cambium/cambium.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
+#include "cambium/scenario/merging_site.hpp"
 
 #include "../support/maps.hpp"
 
@@ -22,6 +26,11 @@ using support::straight_road;
 template <class... Behaviors>
 using Traffic = cb::World<cb::BehaviorSet<Behaviors...>, cb::InterpolateExecution, cb::SingleTrack>;
 
+/// The shipped drivers that follow the rules of the road.
+#define ALL_DRIVERS                                                                             \
+  cb::IdmClassic, cb::IdmLaneTracking, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::Mobil, \
+      cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection
+
 inline double between(double low, double high, cb::RandomStream& random) { return cb::Uniform{low, high}(random); }
 
 /// A road of one lane: 200 m straight, then a bend.
@@ -31,29 +40,24 @@ inline std::shared_ptr<cb::Map const> road_with_bend(double radius) {
                           .sections = {{.right = cb::map::equal_lanes(1)}}});
 }
 
-/// The driving agents as boxes.
-template <class World>
-std::vector<cb::geometry::OrientedBox> boxes(World const& world) {
-  std::vector<cb::geometry::OrientedBox> result;
-  for (std::size_t i = 0; i < world.size(); ++i) {
-    auto const& record = world.frame().agents[i];
-    if (record.status != cb::AgentStatus::driving) continue;
-    result.push_back(
-        cb::geometry::box_of(world.roster().agents[i].shape, {record.state.x, record.state.y, record.state.heading}));
-  }
-  return result;
-}
-
-/// Number of overlapping pairs, of two agents or of an agent and a static object.
+/// Number of overlapping pairs, of two driving agents or of an agent and a static object.
 template <class World>
 int collisions(World const& world) {
-  auto const all = boxes(world);
+  std::vector<cb::geometry::OrientedBox> all;
+  for (cb::Slot i{}; index_of(i) < world.size(); ++i)
+    if (world.frame().agents[i].status == cb::AgentStatus::driving) all.push_back(cb::box_at(world, i));
   int count = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     for (std::size_t k = i + 1; k < all.size(); ++k) count += cb::geometry::intersects(all[i], all[k]);
     for (auto const& object : world.roster().objects) count += cb::geometry::intersects(object.outline, all[i]);
   }
   return count;
+}
+
+/// Steps each of the worlds `steps` times by `dt` [s].
+template <class... Worlds>
+void step_all(int steps, double dt, Worlds&... worlds) {
+  for (int k = 0; k < steps; ++k) REQUIRE((static_cast<bool>(worlds.step(dt)) && ...));
 }
 
 /// Drives some steps and requires that nothing fails or collides.
@@ -65,23 +69,57 @@ void drive_safely(World& world, int steps, double dt = 0.2) {
   }
 }
 
-/// Adds an agent on a lane of the first road; `number` counts the lanes of its direction from the left.
+/// Adds an agent on a lane, `s` [m] after its begin and `lateral` [m] to the left of its middle. Its heading counts
+/// from the lane's.
+template <class World>
+cb::AgentId enter(World& world, cb::map::Lane const& lane, double s, typename World::AgentSpec spec,
+                  double lateral = 0.0) {
+  auto const pose = lane.path.pose(s);
+  spec.position = cb::geometry::to_map(pose, {0.0, lateral});
+  spec.heading = spec.heading.value_or(0.0) + pose.heading;
+  return world.add(spec);
+}
+
+/// A lane of the first road, counted from the left among those of its direction.
+inline cb::map::Lane const& lane_of(cb::Map const& map, int number) {
+  for (auto const& entry : map.roads()[0].sections[0].lanes)
+    if (auto const& lane = map.lane(entry.id); lane.drivable() && lane.number == -number) return lane;
+  FAIL("no such lane");
+  return map.lanes()[0];
+}
+
+/// Adds an agent on that lane.
 template <class World>
 cb::AgentId add(World& world, int number, double s, double speed, typename World::Behavior const& behavior,
                 cb::Goal const& goal = {}, cb::geometry::Shape const& shape = {}) {
-  for (auto const& entry : world.map().roads()[0].sections[0].lanes) {
-    auto const& lane = world.map().lane(entry.id);
-    if (!lane.drivable() || lane.number != -number) continue;
-    auto const pose = lane.path.pose(s);
-    return world.add({.position = pose.position(),
-                      .heading = pose.heading,
-                      .speed = speed,
-                      .shape = shape,
-                      .behavior = behavior,
-                      .goal = goal});
-  }
-  return cb::none<cb::AgentId>;
+  return enter(world, lane_of(world.map(), number), s,
+               {.speed = speed, .shape = shape, .behavior = behavior, .goal = goal});
 }
+
+/// The merge of merging.xodr.
+struct MergingRoad {
+  using Entrance = cb::MergingSite::Entrance;
+
+  cb::MergingSite site = cb::find_merging_site(support::own_map("merging.xodr"));
+  Entrance ramp = site.entrances[site.ramp];
+  Entrance through =
+      *std::ranges::find_if(site.entrances, [](auto const& e) { return e.merges() && !e.gives_up_lane; });
+
+  /// The lane corridor from an entrance to the end of its road.
+  [[nodiscard]] cb::map::LaneCorridor corridor(Entrance const& from) const {
+    auto const road = cb::map::build_road_corridor(*site.map, from.route);
+    return road->corridors[road->main];
+  }
+  /// Adds an agent `before` [m] before the place where its way begins to merge.
+  template <class World>
+  cb::AgentId add(World& world, Entrance const& from, double before, typename World::AgentSpec spec) const {
+    auto const pose = corridor(from).center.pose(from.merge_at - before);
+    spec.position = pose.position();
+    spec.heading = pose.heading;
+    spec.route = from.route;
+    return world.add(spec);
+  }
+};
 
 /// Adds random traffic on lanes 1 to `lanes`, with gaps large enough that nobody has to brake hard.
 /// `driver(desired_speed)` makes a behaviour.

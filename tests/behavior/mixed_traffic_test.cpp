@@ -85,7 +85,7 @@ TEST_CASE("cars, cyclists and pedestrians with their own dynamics follow their w
 
 TEST_CASE("cars and bicycles in one lane follow each other without contact and make progress") {
   auto const road = support::straight_road(1, 2000.0);
-  using Queue = cb::World<cb::BehaviorSet<cb::Intersection>, cb::InterpolateExecution, cb::SingleTrack>;
+  using Queue = Traffic<cb::Intersection>;
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
     CAPTURE(seed);
     cb::RandomStream random(seed, 3, 0);

@@ -4,34 +4,33 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "../support/maps.hpp"
-#include "cambium/cambium.hpp"
-#include "cambium/scenario/merging_site.hpp"
+#include "lane_traffic_fixtures.hpp"
+
+using namespace lane_traffic;
 
 namespace {
 
-namespace cb = cambium;
-
 using Sim = cb::MergingSite::World;
 
-cb::MergingSite merging_site() { return cb::find_merging_site(support::own_map("merging.xodr")); }
+MergingRoad const& merge() {
+  static MergingRoad const road;
+  return road;
+}
 
 struct Outcomes {
-  int merged = 0, collided = 0;
+  int merged = 0;
   double time = 0.0;  ///< mean until merged [s]
 };
 
 Outcomes run(cb::MergingTraffic const& traffic, int scenarios) {
-  auto const site = merging_site();
   Outcomes all;
   for (int i = 0; i < scenarios; ++i) {
-    auto const scenario = site.sample(11, static_cast<std::uint32_t>(i), traffic);
+    auto const scenario = merge().site.sample(11, static_cast<std::uint32_t>(i), traffic);
     auto world = scenario.make_world();
     auto const ego = world.slot_of(scenario.ego);
     for (bool over = false; !over && world.time() < 60.0;) {
       REQUIRE(world.step(0.2));
       bool const collides = cb::AnyCollision{}(world, ego), merged = !collides && cb::AtGoal{}(world, ego);
-      all.collided += collides;
       all.merged += merged;
       if (merged) all.time += world.time();
       over = collides || merged;
@@ -41,20 +40,11 @@ Outcomes run(cb::MergingTraffic const& traffic, int scenarios) {
   return all;
 }
 
-/// Adds an IDM driver with this rule, its front `before` [m] before the merge.
-cb::AgentId add(Sim& world, cb::MergingSite::Entrance const& entrance, double before, double speed,
-                cb::Merging merging) {
-  auto const road = cb::map::build_road_corridor(world.map(), entrance.route);
-  auto const& corridor = road->corridors[road->main];
-  double const merge = corridor.feeders.front().free_until;
-  auto const pose = corridor.center.pose(merge - before - cb::geometry::car().front);
-  cb::IdmClassic driver;
-  driver.rules.merging = merging;
-  return world.add({.position = pose.position(),
-                    .heading = pose.heading,
-                    .speed = speed,
-                    .behavior = driver,
-                    .route = entrance.route});
+/// Adds an IDM driver with this rule, its front `before` [m] before the place where bodies of both lanes would touch.
+cb::AgentId add(Sim& world, MergingRoad::Entrance const& from, double before, double speed, cb::Merging merging) {
+  double const beyond = merge().corridor(from).feeders.front().free_until - from.merge_at;
+  return merge().add(world, from, before - beyond + cb::geometry::car().front,
+                     {.speed = speed, .behavior = cb::IdmClassic{.rules = {.merging = merging}}});
 }
 
 }  // namespace
@@ -73,14 +63,10 @@ TEST_CASE("the more drivers open no gap, the fewer drivers merge that force thei
 }
 
 TEST_CASE("a driver that opens no gap does not brake for a vehicle beside, but for one that has merged before it") {
-  auto const site = merging_site();
-  auto const& ramp = site.entrances[site.ramp];
-  auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
-                                      [](auto const& e) { return e.merges() && !e.gives_up_lane; });
   auto const hardest = [&](cb::Merging merging, double ahead, double ramp_speed) {
-    Sim world(site.map);
-    auto const id = add(world, through, 60.0, 13.0, merging);
-    add(world, ramp, 60.0 - ahead, ramp_speed, cb::Merging::ignored);
+    Sim world(merge().site.map);
+    auto const id = add(world, merge().through, 60.0, 13.0, merging);
+    add(world, merge().ramp, 60.0 - ahead, ramp_speed, cb::Merging::ignored);
     double lowest = 0.0;
     for (int k = 0; k < 60; ++k) {
       REQUIRE(world.step(0.2));
@@ -97,18 +83,14 @@ TEST_CASE("a driver that opens no gap does not brake for a vehicle beside, but f
 }
 
 TEST_CASE("a driver that gives way lets those pass whose gap is too short, takes a large one, and waits at the end") {
-  auto const site = merging_site();
-  auto const& ramp = site.entrances[site.ramp];
-  auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
-                                      [](auto const& e) { return e.merges() && !e.gives_up_lane; });
   struct Run {
     bool first = false;
     double slowest = 1e9;
   };
-  auto const merge = [&](double behind) {
-    Sim world(site.map);
-    auto const own = add(world, ramp, 60.0, 12.0, cb::Merging::gives_way);
-    auto const other = add(world, through, 60.0 + behind, 13.0, cb::Merging::ignored);
+  auto const drive_before = [&](double behind) {
+    Sim world(merge().site.map);
+    auto const own = add(world, merge().ramp, 60.0, 12.0, cb::Merging::gives_way);
+    auto const other = add(world, merge().through, 60.0 + behind, 13.0, cb::Merging::ignored);
     Run result;
     while (world.time() < 30.0) {
       REQUIRE(world.step(0.2));
@@ -119,15 +101,15 @@ TEST_CASE("a driver that gives way lets those pass whose gap is too short, takes
     result.first = ahead && ahead->agent == own;
     return result;
   };
-  auto const tight = merge(8.0), wide = merge(70.0);
+  auto const tight = drive_before(8.0), wide = drive_before(70.0);
   CHECK_FALSE(tight.first);
   CHECK(tight.slowest < 10.0);
   CHECK(wide.first);
   CHECK(wide.slowest > 11.0);
-  // Before an endless stream it stands before the merge.
-  Sim world(site.map);
-  auto const own = add(world, ramp, 60.0, 12.0, cb::Merging::gives_way);
-  for (int i = 0; i < 9; ++i) add(world, through, 50.0 + 22.0 * i, 13.0, cb::Merging::ignored);
+  // Before an endless stream it stands before the merge().
+  Sim world(merge().site.map);
+  auto const own = add(world, merge().ramp, 60.0, 12.0, cb::Merging::gives_way);
+  for (int i = 0; i < 9; ++i) add(world, merge().through, 50.0 + 22.0 * i, 13.0, cb::Merging::ignored);
   double slowest = 1e9;
   for (int k = 0; k < 60; ++k) {
     REQUIRE(world.step(0.2));
@@ -138,10 +120,6 @@ TEST_CASE("a driver that gives way lets those pass whose gap is too short, takes
 }
 
 TEST_CASE("a driver waits for those whose gap behind it would be too short at the merge, as a simulated twin says") {
-  auto const site = merging_site();
-  auto const& ramp = site.entrances[site.ramp];
-  auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
-                                      [](auto const& e) { return e.merges() && !e.gives_up_lane; });
   double const before = 25.0, length = cb::geometry::car().length();
   cb::RoadRules const rules{.merging = cb::Merging::gives_way};
   for (double const speed : {5.5, 8.0, 11.0})
@@ -157,9 +135,9 @@ TEST_CASE("a driver waits for those whose gap behind it would be too short at th
       double const needed = 2.0 + rules.merging_headway * theirs + slower * slower / (2.0 * rules.safe_deceleration);
       double const threshold = needed + theirs * time - before + length;
       for (double const behind : {threshold - 0.3, threshold + 0.3}) {
-        Sim world(site.map);
-        auto const own = add(world, ramp, before, speed, cb::Merging::gives_way);
-        add(world, through, before + behind, theirs, cb::Merging::ignored);
+        Sim world(merge().site.map);
+        auto const own = add(world, merge().ramp, before, speed, cb::Merging::gives_way);
+        add(world, merge().through, before + behind, theirs, cb::Merging::ignored);
         CAPTURE(speed);
         CAPTURE(theirs);
         CAPTURE(threshold);

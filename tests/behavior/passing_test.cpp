@@ -21,10 +21,6 @@ using namespace lane_traffic;
 
 namespace {
 
-#define ALL_DRIVERS                                                                             \
-  cb::IdmClassic, cb::IdmLaneTracking, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::Mobil, \
-      cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection
-
 using Sim = Traffic<ALL_DRIVERS>;
 
 /// A road with lanes of a width, which bends from 100 m on; traffic drives to +x, on the right or on the left.
@@ -63,14 +59,13 @@ cb::IdmClassic cyclist(double desired_speed = 5.0) {
 /// Adds an agent `lateral` [m] to the left of the middle of the first lane, `s` [m] after its begin.
 cb::AgentId enter(Sim& world, double s, double speed, Sim::Behavior const& behavior,
                   cb::geometry::Shape const& shape = {}, double lateral = 0.0) {
-  auto const pose = world.map().lanes()[0].path.pose(s);
-  return world.add(
-      {.position = {pose.x - lateral * std::sin(pose.heading), pose.y + lateral * std::cos(pose.heading)},
-       .heading = pose.heading,
-       .speed = speed,
+  return lane_traffic::enter(
+      world, world.map().lanes()[0], s,
+      {.speed = speed,
        .shape = shape,
        .behavior = behavior,
-       .dynamics = shape == cb::geometry::bicycle() ? cb::presets::bicycle_dynamics() : cb::SingleTrack{}});
+       .dynamics = shape == cb::geometry::bicycle() ? cb::presets::bicycle_dynamics() : cb::SingleTrack{}},
+      lateral);
 }
 
 /// Air between two agents across the lane [m] where their bodies overlap along it; infinite elsewhere.
@@ -206,15 +201,13 @@ TEST_CASE(
   for (double const width : {3.25, 5.0}) {
     CAPTURE(width);
     Sim world(street(width, 0.0, true, 2));
-    auto const& lanes = world.map().lanes();
-    auto const outer = std::find_if(lanes.begin(), lanes.end(), [](auto const& lane) { return lane.number == -2; });
-    auto const on_outer = [&](double s) -> cb::geometry::Point { return outer->path.pose(s).position(); };
-    auto const slow = world.add({.position = on_outer(120.0) - cb::geometry::Point{0.0, 0.5 * width - 0.725},
-                                 .speed = 5.0,
-                                 .shape = cb::geometry::bicycle(),
-                                 .behavior = cyclist(),
-                                 .dynamics = cb::presets::bicycle_dynamics()});
-    auto const id = world.add({.position = on_outer(20.0), .speed = 12.0, .behavior = cb::Mobil{}});
+    auto const slow = lane_traffic::enter(world, lane_of(world.map(), 2), 120.0,
+                                          {.speed = 5.0,
+                                           .shape = cb::geometry::bicycle(),
+                                           .behavior = cyclist(),
+                                           .dynamics = cb::presets::bicycle_dynamics()},
+                                          -(0.5 * width - 0.725));
+    auto const id = add(world, 2, 20.0, 12.0, cb::Mobil{});
     auto const home = world.record(id).lane.corridor;
     bool changed = false;
     double least = 1e9;
@@ -259,7 +252,7 @@ TEST_CASE("cars, vans and cyclists of different speeds share wide lanes without 
   CHECK(past >= 0.8 * with_car);
 }
 
-TEST_CASE("nobody passes who drives in the middle, is about to move over, or is hardly slower") {
+TEST_CASE("nobody passes a vehicle that drives in the middle, is about to move over, or is hardly slower") {
   auto const map = street(7.0);
   auto const passes = [&](double lateral, double heading, double speed, cb::geometry::Shape const& shape) {
     Sim world(map);
@@ -282,7 +275,7 @@ TEST_CASE("nobody passes who drives in the middle, is about to move over, or is 
   CHECK(passes(-2.5, -0.05, 5.0, bicycle));      // outwards
   CHECK_FALSE(passes(-3.3, 0.0, 5.0, bicycle));  // reaches over the border
   CHECK_FALSE(passes(-2.5, 0.0, 14.0, bicycle));
-  CHECK(passes(-2.5, 0.0, 5.0, cb::geometry::car()));  // who it is does not matter, only the room
+  CHECK(passes(-2.5, 0.0, 5.0, cb::geometry::car()));  // only the room matters, not the kind of vehicle
 }
 
 TEST_CASE("a driver passes at the nearest offset with room, as found by trying out steps of 1 cm") {
@@ -339,8 +332,7 @@ TEST_CASE("as long as everybody drives in the middle, the rules of passing chang
     enter(other, s, 4.0, cb::IdmClassic{.desired_speed = desired, .rules = {.passing_clearance = 0.3}});
   }
   for (int i = 0; i < 300; ++i) {
-    REQUIRE(usual.step(0.2));
-    REQUIRE(other.step(0.2));
+    step_all(1, 0.2, usual, other);
     REQUIRE(usual.frame() == other.frame());
     for (auto const& record : usual.frame().agents) REQUIRE(record.lane.lateral == 0.0);
   }

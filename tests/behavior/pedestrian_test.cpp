@@ -45,8 +45,7 @@ template <class Driver>
 void add_vehicles(Sim& world, cb::RandomStream& random, double mean_gap, double least, double most,
                   Driver const& driver) {
   for (double const y : {-1.75, -5.25}) {
-    double const speed =
-        between(least, most, random);  // the same for all vehicles of a lane, so that they need not follow each other
+    double const speed = between(least, most, random);  // the same in a lane, so that nobody need follow
     for (double x = between(5.0, 60.0, random); x < 300.0; x += 6.0 + between(0.0, 2.0, random) * mean_gap * speed)
       world.add({.position = {x, y}, .speed = speed, .behavior = driver(speed)});
   }
@@ -313,8 +312,7 @@ TEST_CASE("steps, copies and the order of entering do not change a bit; no step 
   auto c = fill(true);
   for (int i = 0; i < 40; ++i) {
     c = b;
-    REQUIRE(b.step(0.1));
-    REQUIRE(c.step(0.1));
+    step_all(1, 0.1, b, c);
     REQUIRE(b.frame() == c.frame());
   }
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(a.frame().agents[i].state == b.frame().agents[i].state);

@@ -4,28 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
-#include <string>
 
-#include "../support/maps.hpp"
-#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/scenario/merging_site.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
 
 namespace {
-
-using Set = cb::BehaviorSet<cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic>;
-using World = cb::World<Set, cb::InterpolateExecution, cb::SingleTrack>;
-
-/// Adds a driver with these rules.
-template <class Behavior>
-cb::AgentId enter(World& world, Behavior behavior, cb::RoadRules const& rules, double x = 100, double speed = 14) {
-  behavior.rules = rules;
-  return world.add({.position = {x, -1.75}, .speed = speed, .behavior = behavior});
-}
 
 /// A user's law: Gipps 1981, eq. 2 and 3, read as the acceleration towards the speed after the reaction time.
 struct GippsLaw {
@@ -126,9 +111,9 @@ TEST_CASE_TEMPLATE(
 }
 
 TEST_CASE("of a leader and the lane's end, the one that requires more braking counts") {
-  World world(straight_road(1, 300));
+  Driven world(straight_road(1, 300));
   cb::RoadRules const rules{.lane_end = cb::RoadRules::LaneEnd::always};
-  auto const ahead = enter(world, cb::IdmClassic{}, rules, 290, 0), id = enter(world, cb::IdmClassic{}, rules, 250, 10);
+  auto const ahead = add(world, 1, 290.0, 0.0, cb::IdmClassic{}), id = add(world, 1, 250.0, 10.0, cb::IdmClassic{});
   cb::IdmLaw const law(cb::IdmParameters{}, 10.0);
   auto const strictest = [&](auto const& view) {
     cb::Strictest of_all(law);
@@ -147,60 +132,32 @@ TEST_CASE("of a leader and the lane's end, the one that requires more braking co
 }
 
 TEST_CASE("a driver keeps its leader's gap although a vehicle that merges is nearer, and faster") {
-  World world(support::own_map("merging.xodr"));
-  auto const site = cb::find_merging_site(support::own_map("merging.xodr"));
-  // A place on the main lane 60 m before the merge: the ramp's vehicles are beside it.
-  auto const& through =
-      *std::ranges::find_if(site.entrances, [](auto const& e) { return e.merges() && !e.gives_up_lane; });
-  auto const& ramp = site.entrances[site.ramp];
-  auto const place = [&](cb::MergingSite::Entrance const& entrance, double before_merge, double speed, double desired) {
-    auto const road = cb::map::build_road_corridor(*site.map, entrance.route);
-    auto const pose = road->corridors[road->main].center.pose(entrance.merge_at - before_merge);
-    return world.add({.position = pose.position(),
-                      .heading = pose.heading,
-                      .speed = speed,
-                      .behavior = cb::IdmClassic{.desired_speed = desired},
-                      .route = entrance.route});
+  MergingRoad const merge;
+  Driven world(merge.site.map);
+  auto const place = [&](MergingRoad::Entrance const& from, double before, double speed, double desired) {
+    return merge.add(world, from, before, {.speed = speed, .behavior = cb::IdmClassic{.desired_speed = desired}});
   };
-  auto const id = place(through, 80.0, 12.0, 15.0), leader = place(through, 58.0, 9.9, 9.9);
-  auto const own_alone = world;
-  auto const merging = place(ramp, 58.0, 15.0, 15.0);
+  auto const id = place(merge.through, 80.0, 12.0, 15.0), leader = place(merge.through, 58.0, 9.9, 9.9);
+  auto alone = world;
+  auto const merging = place(merge.ramp, 58.0, 15.0, 15.0);
   auto view = world.observe(id);
   REQUIRE(view.ahead());
   REQUIRE(view.ahead()->agent == merging);
   REQUIRE(view.ahead({.merging = cb::Merging::ignored})->agent == leader);
-  auto alone = own_alone, both = world;
-  REQUIRE(alone.step(0.2));
-  REQUIRE(both.step(0.2));
+  step_all(1, 0.2, alone, world);
   CHECK(alone.record(id).action.acceleration < -0.5);
-  CHECK(both.record(id).action.acceleration <= alone.record(id).action.acceleration);
+  CHECK(world.record(id).action.acceleration <= alone.record(id).action.acceleration);
 }
 
 TEST_CASE_TEMPLATE("vehicles that merge count, or are ignored, as the rules say", Behavior, cb::IdmClassic,
                    cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::IdmProposal) {
-  using Sim = cb::World<cb::BehaviorSet<Behavior, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
-  auto const site = cb::find_merging_site(support::own_map("merging.xodr"));
+  MergingRoad const merge;
   auto const acceleration = [&](bool has_ramp, cb::Merging merging) {
     Behavior behavior;
-    if constexpr (std::is_same_v<Behavior, cb::IdmProposal>)
-      behavior.driver.rules.merging = merging;
-    else
-      behavior.rules.merging = merging;
-    Sim world(site.map);
-    auto const place = [&](cb::MergingSite::Entrance const& entrance, double before_merge,
-                           typename Sim::Behavior const& driver) {
-      auto const road = cb::map::build_road_corridor(*site.map, entrance.route);
-      auto const pose = road->corridors[road->main].center.pose(entrance.merge_at - before_merge);
-      return world.add({.position = pose.position(),
-                        .heading = pose.heading,
-                        .speed = 12.0,
-                        .behavior = driver,
-                        .route = entrance.route});
-    };
-    auto const& through =
-        *std::ranges::find_if(site.entrances, [](auto const& e) { return e.merges() && !e.gives_up_lane; });
-    auto const id = place(through, 60.0, behavior);
-    if (has_ramp) place(site.entrances[site.ramp], 36.0, cb::ConstantAcceleration{});
+    rules_of(behavior).merging = merging;
+    Traffic<Behavior, cb::ConstantAcceleration> world(merge.site.map);
+    auto const id = merge.add(world, merge.through, 60.0, {.speed = 12.0, .behavior = behavior});
+    if (has_ramp) merge.add(world, merge.ramp, 36.0, {.speed = 12.0, .behavior = cb::ConstantAcceleration{}});
     REQUIRE(world.step(0.2));
     return world.record(id).action.acceleration;
   };
@@ -243,12 +200,10 @@ TEST_CASE("a driver that obeys speed limits keeps them on a town's roads") {
     if (!lane.drivable() || lane.length() < 60 || lane.speed_limits.empty()) continue;
     double const limit = cb::map::speed_limit_at(lane.speed_limits, 5.0);
     if (!std::isfinite(limit)) continue;
-    World world(map);
-    cb::IdmClassic driver{.desired_speed = 50.0};
-    driver.rules.obey_speed_limits = true;
-    auto const pose = lane.path.pose(5.0);
-    auto const id =
-        world.add({.position = pose.position(), .heading = pose.heading, .speed = 0.9 * limit, .behavior = driver});
+    Driven world(map);
+    auto const id = enter(world, lane, 5.0,
+                          {.speed = 0.9 * limit,
+                           .behavior = cb::IdmClassic{.desired_speed = 50.0, .rules = {.obey_speed_limits = true}}});
     for (int k = 0; k < 100 && world.status(id) == cb::AgentStatus::driving; ++k) {
       auto const& record = world.record(id);
       auto const& corridor = world.roster().agents[0].road->corridors[record.lane.corridor];
@@ -364,4 +319,3 @@ TEST_CASE("macro actions that obey limits keep their speed on a road without a l
   for (int k = 0; k < 20; ++k) REQUIRE(world.step(0.2));
   CHECK(world.state(id).speed == doctest::Approx(30.0));
 }
-#undef DRIVERS

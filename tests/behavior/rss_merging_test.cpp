@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 
 #include "../support/maps.hpp"
 #include "../support/scale.hpp"

@@ -76,7 +76,7 @@ Tally drive(bool safe, std::uint32_t scenarios) {
       bool const overtakes = cb::uniform_index(random, 4) == 0;
       double const from = overtakes ? draw(0, 6) : 0.0;
       world.add({.position = {x, 1.75},
-                 .heading = 3.14159265358979323846,
+                 .heading = cb::geometry::pi,
                  .speed = oncoming,
                  .behavior = driver({from, overtakes ? from + 6.0 : 0.0, oncoming}, safe)});
       x += cb::rss_same_direction(cb::RssParameters{}, 25.0, oncoming) + 10.0;
@@ -84,7 +84,7 @@ Tally drive(bool safe, std::uint32_t scenarios) {
     bool collided = false, was_left = false, braked = false;
     for (double t = 0; t < 25.0 && !collided; t += dt) {
       INFO("number ", number, ", t ", t);
-      if (!world.step(dt)) FAIL_CHECK("a step failed");
+      REQUIRE(world.step(dt));
       collided = cb::AnyCollision{}(world);
       if (safe && collided) FAIL_CHECK("a collision");
       was_left = was_left || world.state(one).y > 0.0;
@@ -119,10 +119,7 @@ TEST_CASE("nobody brakes for oncoming vehicles in their own lane") {
                                     .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
   World world(map);
   for (auto const& lane : map->lanes())
-    for (double const s : {100.0, 300.0, 500.0}) {
-      auto const pose = lane.path.pose(s);
-      world.add({.position = pose.position(), .heading = pose.heading, .speed = 15.0, .behavior = Safe{}});
-    }
+    for (double const s : {100.0, 300.0, 500.0}) enter(world, lane, s, {.speed = 15.0, .behavior = Safe{}});
   for (int i = 0; i < 80; ++i) {
     REQUIRE(world.step(0.2));
     for (auto const& record : world.frame().agents) CHECK(record.state.speed == doctest::Approx(15.0).epsilon(1e-3));

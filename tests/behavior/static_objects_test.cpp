@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -16,40 +15,23 @@ using namespace lane_traffic;
 namespace {
 
 using Rss = cb::RssConformant<cb::ConstantAcceleration>;
-using Sim = Traffic<cb::IdmClassic, cb::IdmLaneTracking, cb::IdmStochastic, cb::AdaptiveCruiseControl, cb::Mobil,
-                    cb::LaneChangeRuleBased, cb::ZipMerge, Rss, cb::MacroActions, cb::Intersection, cb::Pedestrian>;
-
-std::vector<std::pair<std::string, Sim::Behavior>> drivers() {
-  auto const keep_gap = cb::MacroActions::of({{.kind = cb::MacroAction::Kind::keep_gap}});
-  return {{"idm_classic", cb::IdmClassic{}},
-          {"idm_lane_tracking", cb::IdmLaneTracking{}},
-          {"idm_stochastic", cb::IdmStochastic{}},
-          {"acc", cb::AdaptiveCruiseControl{}},
-          {"mobil", cb::Mobil{}},
-          {"rule based", cb::LaneChangeRuleBased{}},
-          {"zip merge", cb::ZipMerge{}},
-          {"rss", Rss{}},
-          {"macro actions", keep_gap},
-          {"intersection", cb::Intersection{}}};
-}
+using Sim = Traffic<ALL_DRIVERS, Rss, cb::MacroActions, cb::Pedestrian>;
 
 void put_box(Sim& world, double x, double right, double left) {
   world.add_object(cb::geometry::Polygon({{x, right}, {x + 2.0, right}, {x + 2.0, left}, {x, left}}));
 }
 
-/// Calls `f(world, id, x, seed, random, name)` for each driver at several speeds up to 16 m/s, far before x.
+/// Calls `f(world, id, x, seed, random)` for a driver at several speeds up to 16 m/s, far before x.
 template <class F>
-void for_each_driver(std::uint32_t purpose, double least_speed, F const& f) {
+void for_each_start(Sim::Behavior const& driver, std::uint32_t purpose, double least_speed, F const& f) {
   auto const road = support::straight_road(1, 600.0);  // y from 0 to -3.5
-  for (auto const& driver : drivers())
-    for (std::uint32_t seed = 0; seed < 12; ++seed) {
-      INFO("driver ", driver.first, ", seed ", seed);
-      cb::RandomStream random(seed, purpose, 0);
-      Sim world(road, {.seed = seed});
-      double const x = between(120, 220, random), speed = between(least_speed, 16, random);
-      auto const id = add(world, 1, between(5, 20, random), speed, driver.second);
-      f(world, id, x, seed, random, driver.first);
-    }
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, purpose, 0);
+    Sim world(road, {.seed = seed});
+    double const x = between(120, 220, random), speed = between(least_speed, 16, random);
+    f(world, add(world, 1, between(5, 20, random), speed, driver), x, seed, random);
+  }
 }
 
 /// A road with a lane for cars and one for bicycles, and the latter's id.
@@ -64,8 +46,9 @@ std::pair<std::shared_ptr<cb::Map const>, cb::LaneId> road_with_biking_lane() {
 
 }  // namespace
 
-TEST_CASE("every driver stops before a static object in its lane, even if it is only partly in the lane") {
-  for_each_driver(1, 3, [](Sim& world, cb::AgentId id, double x, std::uint32_t seed, auto&, auto const&) {
+TEST_CASE_TEMPLATE("every driver stops before a static object in its lane, even if it is only partly in the lane",
+                   Driver, ALL_DRIVERS, Rss, cb::MacroActions) {
+  for_each_start(Driver{}, 1, 3, [](Sim& world, cb::AgentId id, double x, std::uint32_t seed, auto&) {
     auto const kind = seed % 3;  // across the whole lane, from the right, from the left
     put_box(world, x, kind == 2 ? -1.0 : -4.5, kind == 1 ? -2.5 : 1.0);
     drive_safely(world, 300);
@@ -75,8 +58,9 @@ TEST_CASE("every driver stops before a static object in its lane, even if it is 
   });
 }
 
-TEST_CASE("every driver stops for a slow pedestrian in its lane, and drives on afterwards") {
-  for_each_driver(2, 5, [](Sim& world, cb::AgentId id, double x, auto, cb::RandomStream& random, auto const& name) {
+TEST_CASE_TEMPLATE("every driver stops for a slow pedestrian in its lane, and drives on afterwards", Driver,
+                   ALL_DRIVERS, Rss, cb::MacroActions) {
+  for_each_start(Driver{}, 2, 5, [](Sim& world, cb::AgentId id, double x, auto, cb::RandomStream& random) {
     std::vector<cb::geometry::Point> const points{{x, 2.0}, {x, -9.0}};
     world.add({.position = {x, between(-2.0, -0.2, random)},
                .shape = cb::geometry::pedestrian(),
@@ -87,7 +71,7 @@ TEST_CASE("every driver stops for a slow pedestrian in its lane, and drives on a
       drive_safely(world, 1);
       has_stood = has_stood || world.state(id).speed < 0.5;
     }
-    if (name == "rss") return;  // its nominal behaviour keeps whatever speed it has
+    if (std::is_same_v<Driver, Rss>) return;  // its nominal behaviour keeps whatever speed it has
     CHECK(has_stood);
     CHECK(world.state(id).x > x + 5.0);
   });

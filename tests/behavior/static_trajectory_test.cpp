@@ -28,7 +28,7 @@ std::vector<cb::State> recorded(double begin, double x, int count, double spacin
 
 double distance(cb::State const& a, cb::State const& b) {
   return std::abs(a.time - b.time) + std::hypot(a.x - b.x, a.y - b.y) +
-         std::abs(std::remainder(a.heading - b.heading, 2 * 3.14159265358979323846)) + std::abs(a.speed - b.speed);
+         std::abs(std::remainder(a.heading - b.heading, 2 * cb::geometry::pi)) + std::abs(a.speed - b.speed);
 }
 
 }  // namespace
@@ -38,8 +38,7 @@ TEST_CASE("a replay reproduces recorded traffic at any step length that meets it
   World world(straight_road(2, 2000.0, 0.002));
   auto const& lane = world.map().lanes()[0];
   for (int i = 0; i < 6; ++i) {
-    auto const pose = lane.path.pose(40.0 + 40.0 * i);
-    world.add({.position = pose.position(), .heading = pose.heading, .speed = 5 + 10 * cb::uniform01(random)});
+    enter(world, lane, 40.0 + 40.0 * i, {.speed = 5 + 10 * cb::uniform01(random)});
   }
   constexpr double dt = 0.1;
   std::vector<std::vector<cb::State>> recordings(world.size());
@@ -68,7 +67,7 @@ TEST_CASE("a replay interpolates between samples, the heading along the shorter 
   CHECK(middle.time == 2.0);
   CHECK(middle.x == doctest::Approx(5));
   CHECK(middle.y == doctest::Approx(-1));
-  CHECK(std::abs(std::remainder(middle.heading - 3.14159265358979323846, 2 * 3.14159265358979323846)) < 1e-12);
+  CHECK(std::abs(std::remainder(middle.heading - cb::geometry::pi, 2 * cb::geometry::pi)) < 1e-12);
   CHECK(middle.speed == doctest::Approx(6));
   CHECK(replay.at(1.0) == cb::State{1.0, 0, 0, 3.0, 4});
   CHECK(replay.at(3.0) == cb::State{3.0, 10, -2, -3.0, 8});

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <memory>
 #include <vector>
 
 #include "../support/scale.hpp"
@@ -18,10 +17,6 @@ using namespace lane_traffic;
 using cb::geometry::Point;
 
 namespace {
-
-#define ALL_DRIVERS                                                                             \
-  cb::IdmClassic, cb::IdmLaneTracking, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::Mobil, \
-      cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection
 
 using Sim = Traffic<cb::ConstantAcceleration, cb::Pedestrian, ALL_DRIVERS>;
 

@@ -33,7 +33,7 @@ cb::ZipMerge zip(double desired_speed) { return {.idm = {.desired_speed = desire
 
 /// The lanes from which vehicles pass position x, in this order.
 struct Passed {
-  std::vector<int> lanes;
+  std::string lanes;
   int collisions = 0;
 
   /// How often two vehicles of one lane pass in succession.
@@ -57,7 +57,7 @@ Passed run(Sim& world, std::map<cb::AgentId, int> const& from, double x, int ste
       if (was < x && is >= x) now.emplace_back(-is, at->second);
     }
     std::sort(now.begin(), now.end());
-    for (auto const& [place, lane] : now) passed.lanes.push_back(lane);
+    for (auto const& [place, lane] : now) passed.lanes += std::to_string(lane);
     passed.collisions += collisions(world);
   }
   return passed;
@@ -72,9 +72,7 @@ TEST_CASE("on a saturated lane drop vehicles alternate between the lanes and do 
     Sim world(map, {.seed = seed});
     auto const from = queues(world, seed, seed % 2 == 0 ? 2 : 1, seed % 2 == 0 ? 10.0 : 7.0, zip);
     auto const passed = run(world, from, 640.0, 700);
-    std::string order;
-    for (int const lane : passed.lanes) order += std::to_string(lane);
-    INFO("seed ", seed, ", order ", order);
+    INFO("seed ", seed, ", order ", passed.lanes);
     CHECK(passed.collisions == 0);
     CHECK(passed.lanes.size() == from.size());
     // The last vehicles have nobody left to alternate with.
@@ -179,16 +177,13 @@ TEST_CASE("ramp and main road alternate at a merge in a junction, without collis
         if (!lane.drivable() || (number == 1 && entry.number != -2)) continue;
         for (double s = lane.length() - 10.0 * cb::uniform01(random); s > 5.0;
              s -= 12.0 + 6.0 * cb::uniform01(random)) {
-          auto const pose = lane.path.pose(s);
-          from[world.add({.position = pose.position(), .heading = pose.heading, .speed = 5.0, .behavior = zip(14.0)})] =
-              number;
+          from[enter(world, lane, s, {.speed = 5.0, .behavior = zip(14.0)})] = number;
         }
       }
     }
     auto const passed = run(world, from, 800.0, 900);
+    auto const& order = passed.lanes;
     CAPTURE(seed);
-    std::string order;
-    for (int const lane : passed.lanes) order += std::to_string(lane);
     CAPTURE(order);
     CHECK(passed.collisions == 0);
     // Except for the first two, which start at the merge, and the last ones, which have nobody left to alternate with.
@@ -205,10 +200,9 @@ TEST_CASE("a driver loses its patience with a vehicle that stands, and only then
     Blocked world(own_map("lane_drop.xodr"));
     auto driver = zip(14.0);
     driver.patience = patience;
-    auto const leader = add(world, 2, 438.0, 8.0, cb::IdmClassic{.desired_speed = 14.0});
+    add(world, 2, 438.0, 8.0, cb::IdmClassic{.desired_speed = 14.0});
     auto const id = add(world, 2, 428.0, 0.0, driver);
     add(world, 3, 424.0, 0.0, cb::ConstantAcceleration{});  // its turn, but it never starts
-    static_cast<void>(leader);
     while (world.time() < 40.0 && world.state(id).speed < 1.0) REQUIRE(world.step(0.2));
     return world.time();
   };

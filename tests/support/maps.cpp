@@ -27,14 +27,17 @@ std::shared_ptr<cambium::Map const> two_way_road(double length) {
       {.id = "1", .line = cambium::map::lay_from({}, {{length}}), .sections = {{.left = lane, .right = lane}}});
 }
 
-std::shared_ptr<cambium::Map const> road_with_signal(std::string const& type) {
+std::shared_ptr<cambium::Map const> road_with_signal(std::string const& type, int lanes) {
+  std::string text;
+  for (int lane = 1; lane <= lanes; ++lane)
+    text +=
+        "<lane id='-" + std::to_string(lane) + "' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane>";
   return cambium::parse_opendrive(
              "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
-             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
-             "id='0'/></center><right>"
-             "<lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection>"
-             "</lanes><signals><signal id='1' s='200' t='-4' type='" +
-             type + "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
+             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane id='0'/></center>"
+             "<right>" +
+             text + "</right></laneSection></lanes><signals><signal id='1' s='200' t='-4' type='" + type +
+             "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
       .map;
 }
 

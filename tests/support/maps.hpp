@@ -16,8 +16,8 @@ std::shared_ptr<cambium::Map const> straight_road(int lanes = 2, double length =
 /// The same with one lane in each direction, the axis between them.
 std::shared_ptr<cambium::Map const> two_way_road(double length);
 
-/// A straight road of 500 m with an OpenDRIVE signal of `type` for its only lane at 200 m.
-std::shared_ptr<cambium::Map const> road_with_signal(std::string const& type);
+/// A straight road of 500 m, as `straight_road`, with an OpenDRIVE signal of `type` for its lanes at 200 m.
+std::shared_ptr<cambium::Map const> road_with_signal(std::string const& type, int lanes = 1);
 
 /// The project's own map of that file name.
 std::shared_ptr<cambium::Map const> own_map(std::string const& name);
