@@ -53,6 +53,8 @@ TEST_CASE("a set knows its members") {
   static_assert(std::is_same_v<Set::Any, cb::OneOf<Counter<1>, Plain, Counter<2>, Counter<3>>>);
   static_assert(std::is_same_v<cb::MemoryOf<Plain>, cb::NoMemory> &&
                 std::is_same_v<cb::MemoryOf<Counter<1>>, Counter<1>::Memory>);
+  using Shipped = cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration, cb::ExternalInput>;
+  static_assert(std::is_trivially_copyable_v<Shipped::Any> && std::is_trivially_copyable_v<Shipped::Memory>);
 }
 
 TEST_CASE("each member plans with its own parameters and its own memory") {
@@ -67,19 +69,4 @@ TEST_CASE("each member plans with its own parameters and its own memory") {
     CHECK(memory.index() == i);
     CHECK((memory == Set::initial_memory(members[i])) == (i == 1));
   }
-}
-
-TEST_CASE("each agent's memory is kept from call to call") {
-  Set::Any const behavior = Counter<2>{};
-  auto memory = Set::initial_memory(behavior), other = memory;
-  Set::Workspaces workspaces;
-  for (int i = 0; i < 5; ++i) (void)Set::plan(behavior, View{}, memory, 0.1, workspaces);
-  CHECK(std::get<2>(memory).calls == 25);
-  CHECK(std::get<2>(other).calls == 20);
-}
-
-TEST_CASE("the shipped behaviours and their memories are trivially copyable") {
-  using Shipped = cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration, cb::ExternalInput>;
-  CHECK(std::is_trivially_copyable_v<Shipped::Any>);
-  CHECK(std::is_trivially_copyable_v<Shipped::Memory>);
 }

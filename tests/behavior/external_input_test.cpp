@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "../world/fixtures.hpp"
-#include "cambium/core/distributions.hpp"
 
 using namespace fixtures;
 using cb::ExternalInput;
@@ -38,18 +37,6 @@ TEST_CASE("an input holds until the next one is set, and steers a circle") {
   CHECK(world.state(id).heading == heading);
 }
 
-TEST_CASE("a copy has the same input; another input in the copy does not affect the original") {
-  Sim world(field());
-  auto const id = add(world, 8.0);
-  world.memory<ExternalInput>(id) = {1.0, 0.0};
-  Sim copy = world;
-  copy.memory<ExternalInput>(id).acceleration = -1.0;
-  REQUIRE(world.step(1.0));
-  REQUIRE(copy.step(1.0));
-  CHECK(world.state(id).speed == doctest::Approx(9.0));
-  CHECK(copy.state(id).speed == doctest::Approx(7.0));
-}
-
 TEST_CASE("inputs beyond the vehicle's limits are reduced, and the action reports the reduced ones") {
   Sim world(field());
   auto const id = add(world, 10.0);
@@ -67,34 +54,6 @@ TEST_CASE("inputs beyond the vehicle's limits are reduced, and the action report
   world.memory<ExternalInput>(id) = {-100.0, 3.0};
   REQUIRE(world.step(0.1));
   CHECK(world.record(id).action == cb::Action{model.lowest_acceleration, steering});
-}
-
-TEST_CASE("a braking vehicle stops where the closed form says, even within a step, and never reverses") {
-  for (double const dt : {0.1, 0.2, 0.3, 3.0}) {
-    Sim world(field());
-    auto const id = add(world, 6.0);
-    world.memory<ExternalInput>(id) = {-4.0, 0.0};
-    for (double t = 0; t < 4.0; t += dt) REQUIRE(world.step(dt));
-    CHECK(world.state(id).speed == 0.0);
-    CHECK(world.state(id).x == doctest::Approx(154.5));
-    auto const state = world.state(id);
-    REQUIRE(world.step(dt));
-    CHECK(world.state(id).x == state.x);
-    CHECK(world.state(id).speed == 0.0);
-  }
-}
-
-TEST_CASE("no sequence of inputs makes a vehicle reverse") {
-  cb::RandomStream random(4, 0, 0);
-  Sim world(field());
-  auto const id = add(world, 3.0);
-  for (int i = 0; i < 5000; ++i) {
-    // Numbers with few digits often stop exactly at the end of a step.
-    world.memory<ExternalInput>(id).acceleration = 0.5 * (static_cast<double>(cb::uniform_index(random, 17)) - 8.0);
-    REQUIRE(world.step(0.1));
-    CHECK(world.state(id).speed >= 0.0);
-    if (world.state(id).x > 300) world.set_state(id, {.x = 150, .y = -100, .speed = world.state(id).speed});
-  }
 }
 
 TEST_CASE("Euler and Runge-Kutta integration agree for short sub-steps and differ for long ones") {

@@ -11,7 +11,6 @@
 
 #include "cambium/cambium.hpp"
 
-#include "../support/allocations.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 namespace {
@@ -143,15 +142,12 @@ TEST_CASE_TEMPLATE("a human without imperfections drives as the nominal behaviou
                                                     .gap_error = 0.0,
                                                     .rate_error = 0.0});
   }
-  for (int k = 0; k < 150; ++k) {
-    REQUIRE(nominal.step(0.2));
-    REQUIRE(human.step(0.2));
-  }
+  step_all(150, 0.2, nominal, human);
   for (std::size_t i = 0; i < human.size(); ++i)
     CHECK(human.frame().agents[i].state == nominal.frame().agents[i].state);
 }
 
-TEST_CASE("so it does among cyclists, seen by an imperfect observer") {
+TEST_CASE("a human without imperfections does so among cyclists, and where it observes with errors") {
   using Human = cb::HumanDriver<cb::IdmClassic>;
   using Noisy = cb::World<cb::BehaviorSet<cb::IdmClassic, Human>, cb::InterpolateExecution, cb::SingleTrack,
                           cb::ParametricObserver>;
@@ -332,17 +328,4 @@ TEST_CASE("a driver that looks away notices later that its leader brakes") {
   CHECK(away / double{runs} == doctest::Approx(1.5 / 4.5).epsilon(0.25));  // the share of its time
   CHECK(late > runs / 8);
   CHECK(late < runs / 2);
-}
-
-TEST_CASE("imperfect drivers repeat to the last bit and allocate nothing once warm") {
-  Human human{.nominal = cb::idm_classic(driver)};
-  human.looks_away = 1.0;
-  auto world = platoon(Swinging{}, human, 10);
-  for (int k = 0; k < 20; ++k) REQUIRE(world.step(0.2));
-  auto copy = world;
-  auto const before = support::allocations();
-  for (int k = 0; k < 100; ++k) REQUIRE(world.step(0.2));
-  CHECK(support::allocations() == before);
-  for (int k = 0; k < 100; ++k) REQUIRE(copy.step(0.2));
-  CHECK(world.frame() == copy.frame());
 }

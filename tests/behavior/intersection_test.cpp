@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "../support/allocations.hpp"
-#include "../support/corpus.hpp"
-#include "../support/maps.hpp"
-#include "cambium/cambium.hpp"
 #include "cambium/map/building/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/document.hpp"
+#include "lane_traffic_fixtures.hpp"
 
 using namespace cambium;
+using lane_traffic::enter;
 
 namespace {
 
@@ -47,21 +46,18 @@ struct Crossing {
   }
 };
 
+bool is_in_junction(Map const& map, LaneId lane) { return is_valid(map.road(map.lane(lane).road).junction); }
+
 /// Adds a car `distance` [m] before the first junction of the route.
 AgentId add_before(Sim& world, map::Route const& route, double distance, double speed,
                    std::optional<AgentId> id = std::nullopt) {
   auto const& map = world.map();
   std::size_t last = 0;
-  while (!is_valid(map.road(map.lane(route.lanes[last + 1]).road).junction)) ++last;
+  while (!is_in_junction(map, route.lanes[last + 1])) ++last;
   double s = map.lane(route.lanes[last]).length() - distance;
   while (s < 0.0 && last > 0) s += map.lane(route.lanes[--last]).length();
-  auto const pose = map.lane(route.lanes[last]).path.pose(s);
-  return world.add({.position = pose.position(),
-                    .heading = pose.heading,
-                    .speed = speed,
-                    .behavior = Intersection{.idm = {.desired_speed = 10.0}},
-                    .route = route,
-                    .id = id});
+  return enter(world, map.lane(route.lanes[last]), s,
+               {.speed = speed, .behavior = Intersection{.idm = {.desired_speed = 10.0}}, .route = route, .id = id});
 }
 
 /// Time [s] at which each agent of `ids` leaves the junction's lanes; none if it never does. Requires that nobody
@@ -155,20 +151,6 @@ TEST_CASE("four cars that arrive at a crossing together all get through") {
       }
 }
 
-TEST_CASE("four cars on the corpus crossing, each with another on its right, all get through") {
-  auto const map = support::corpus_map("4way_intersection.xodr");
-  if (!map) return;
-  Sim world(map);
-  std::vector<AgentId> ids;
-  for (auto const& lane : map->lanes()) {
-    if (!lane.drivable() || !lane.predecessors.empty() || lane.length() < 20.0) continue;
-    auto const route = map::straight_route(*map, lane.id);
-    if (route.lanes.size() > 2) ids.push_back(add_before(world, route, 18.0, 4.0));
-  }
-  REQUIRE(ids.size() == 4);
-  for (auto const& time : times_through(world, ids)) CHECK(time);
-}
-
 TEST_CASE("a junction's priorities override right before left") {
   auto const map = support::own_map("intersection_3way.xodr");
   Sim world(map);
@@ -196,9 +178,8 @@ TEST_CASE("a junction's priorities override right before left") {
   for (int k = 0; k < 200; ++k) {
     REQUIRE(world.step(0.2));
     REQUIRE(!collision(world));
-    auto const in = [&](AgentId id) { return is_valid(map->road(map->lane(world.lane_of(id)).road).junction); };
-    if (left_in == 0.0 && in(left)) left_in = world.time();
-    if (straight_in == 0.0 && in(straight)) straight_in = world.time();
+    if (left_in == 0.0 && is_in_junction(*map, world.lane_of(left))) left_in = world.time();
+    if (straight_in == 0.0 && is_in_junction(*map, world.lane_of(straight))) straight_in = world.time();
   }
   CHECK(straight_in > 0.0);
   CHECK(left_in > straight_in);
@@ -302,12 +283,6 @@ TEST_CASE("a late runner passes in the first second of red, a driver that obeys 
   REQUIRE(!lights.empty());
   // The arm's light is yellow from 1 s and red from 4 s on; the others turn green when it turns red.
   auto const route = crossing.route(1, 0);
-  auto const line_light = [&](Sim& world, AgentId id) {
-    for (auto const& signal : world.observe(id).corridor().signals)
-      if (signal.kind == map::SignalKind::light) return signal;
-    REQUIRE(false);
-    return map::CorridorSignal{};
-  };
   int runners = 0;
   for (double const late : {0.0, 1.0})
     for (double distance = 30.0; distance <= 80.0; distance += 2.5) {
@@ -319,11 +294,12 @@ TEST_CASE("a late runner passes in the first second of red, a driver that obeys 
       driver.rules.obey_speed_limits = false;
       driver.rules.late_at_red = late;
       world.set_behavior(id, driver);
-      auto const signal = line_light(world, id);
-      for (auto const& light : lights)
-        world.set_light(light.id, light.id == signal.light
-                                      ? map::LightPlan{.cycle = 60.0, .green_begin = 0.0, .green_end = 1.0}
-                                      : map::LightPlan{.cycle = 60.0, .green_begin = 4.0, .green_end = 30.0});
+      auto const& signals = world.observe(id).corridor().signals;
+      auto const signal = *std::ranges::find(signals, map::SignalKind::light, &map::CorridorSignal::kind);
+      for (auto const& light : lights) {
+        bool const is_own = light.id == signal.light;
+        world.set_light(light.id, {.cycle = 60.0, .green_begin = is_own ? 0.0 : 4.0, .green_end = is_own ? 1.0 : 30.0});
+      }
       auto const north = add_before(world, crossing.route(2, 0), 45.0, 8.0);
       CHECK(world.observe(id).red_for(signal.light) == doctest::Approx(-4.0));
       double passed = 1e9;
@@ -362,17 +338,13 @@ TEST_CASE("a light's plan repeats; invalid plans and lights are errors") {
 TEST_CASE("a vehicle that has just split off and stands with its rear in the way is seen") {
   // A vehicle follows one that turns right and has stopped as soon as its reference point has left the lane.
   Crossing const crossing;
-  Sim world(crossing.map);
   auto const turning = crossing.route(1, 1), straight = crossing.route(1, 0);
   auto const& way = crossing.map->lane(turning.lanes[1]);
   for (double s = 1.0; s < 12.0; s += 1.0) {
     Sim at(crossing.map);
-    auto const pose = way.path.pose(s);
-    at.add({.position = pose.position(),
-            .heading = pose.heading,
-            .speed = 0.0,
-            .behavior = IdmClassic{.desired_speed = 0.1, .maximum_acceleration = 0.01, .highest_acceleration = 0.0},
-            .route = turning});
+    enter(at, way, s,
+          {.behavior = IdmClassic{.desired_speed = 0.1, .maximum_acceleration = 0.01, .highest_acceleration = 0.0},
+           .route = turning});
     add_before(at, straight, 30.0, 8.0);
     (void)times_through(at, {}, 20.0);
   }
@@ -382,8 +354,7 @@ TEST_CASE("crossing a junction allocates nothing and is repeatable, in the world
   Crossing const crossing;
   Sim world(crossing.map, {.seed = 4});
   for (int arm = 1; arm <= 4; ++arm)
-    for (int turn : {0, 1, 2})
-      add_before(world, crossing.route(arm, turn), 30.0 + 9.0 * turn * (turn == 2 ? 0 : 1), 6.0);
+    for (int turn : {0, 1, 2}) add_before(world, crossing.route(arm, turn), turn == 1 ? 39.0 : 30.0, 6.0);
   auto future = world.observe(static_cast<AgentId>(0)).predict(predict_all_as<Set>(Intersection{}));
   for (auto* each : {&world, &future}) {
     Sim copy = *each;
@@ -406,14 +377,13 @@ TEST_CASE("a driver keeps the junction clear if there is no room behind it, unle
     world.set_behavior(id, Intersection{.idm = {.desired_speed = 10.0}, .keep_clear = keep_clear});
     // A queue that hardly moves begins right behind the junction.
     std::size_t behind = 1;
-    while (!is_valid(crossing.map->road(crossing.map->lane(route.lanes[behind]).road).junction)) ++behind;
-    while (is_valid(crossing.map->road(crossing.map->lane(route.lanes[behind]).road).junction)) ++behind;
-    auto const pose = crossing.map->lane(route.lanes[behind]).path.pose(2.0);
-    world.add({.position = pose.position(), .heading = pose.heading, .behavior = IdmClassic{.desired_speed = 0.1}});
+    while (!is_in_junction(*crossing.map, route.lanes[behind])) ++behind;
+    while (is_in_junction(*crossing.map, route.lanes[behind])) ++behind;
+    enter(world, crossing.map->lane(route.lanes[behind]), 2.0, {.behavior = IdmClassic{.desired_speed = 0.1}});
     bool entered = false;
     for (int i = 0; i < 100; ++i) {
       REQUIRE(world.step(0.2));
-      entered = entered || is_valid(crossing.map->road(crossing.map->lane(world.lane_of(id)).road).junction);
+      entered = entered || is_in_junction(*crossing.map, world.lane_of(id));
     }
     CAPTURE(keep_clear);
     CHECK(entered == !keep_clear);

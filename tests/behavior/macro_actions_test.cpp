@@ -7,7 +7,6 @@
 #include <cmath>
 #include <set>
 #include <string>
-#include "cambium/map/opendrive.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -181,17 +180,6 @@ TEST_CASE("for any shape and speed the body stays within the two lanes of a chan
         }
 }
 
-TEST_CASE("copies include the chosen action and the change in progress") {
-  Highway at;
-  at.choose(number_of(Kind::change_right));
-  at.drive(5);
-  auto copy = at.world;
-  at.drive(20);
-  for (int i = 0; i < 20; ++i) REQUIRE(copy.step(0.25));
-  CHECK(copy.frame() == at.world.frame());
-  CHECK(at.y() == doctest::Approx(-8.75).epsilon(1e-6));
-}
-
 TEST_CASE("changes are available if there is a lane on that side") {
   auto const available = [](double y, Kind kind) {
     Highway at({}, y);
@@ -209,22 +197,11 @@ TEST_CASE("changes are available if there is a lane on that side") {
 
 TEST_CASE("a change into a lane that ends too soon is unavailable and does not begin") {
   World world(support::own_map("lane_drop.xodr"));
-  auto const& road = world.map().roads()[0];
   auto const number = number_of(Kind::change_right);
-  auto const at = [&](double s) {
-    for (auto const& entry : road.sections[0].lanes)
-      if (entry.number == -2) {
-        auto const pose = world.map().lane(entry.id).path.pose(s);
-        return world.add({.position = pose.position(),
-                          .heading = pose.heading,
-                          .speed = 10,
-                          .behavior = cb::MacroActions{.minimum_remaining = 150.0}});
-      }
-    return cb::none<cb::AgentId>;
-  };
-  auto const far = at(200.0), near = at(390.0);
-  CHECK(cb::MacroActions{.minimum_remaining = 150.0}.available(world.observe(far), number));
-  CHECK_FALSE(cb::MacroActions{.minimum_remaining = 150.0}.available(world.observe(near), number));
+  cb::MacroActions const macro{.minimum_remaining = 150.0};
+  auto const far = add(world, 2, 200.0, 10.0, macro), near = add(world, 2, 390.0, 10.0, macro);
+  CHECK(macro.available(world.observe(far), number));
+  CHECK_FALSE(macro.available(world.observe(near), number));
   for (auto const id : {far, near}) world.memory<cb::MacroActions>(id).choose(number);
   REQUIRE(world.step(0.25));
   CHECK(world.memory<cb::MacroActions>(far).change.active());
@@ -239,8 +216,7 @@ TEST_CASE("keeping the gap equals IDM") {
   other.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::IdmClassic{}});
   other.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.desired_speed = 6}});
   for (int i = 0; i < 40; ++i) {
-    REQUIRE(world.step(0.25));
-    REQUIRE(other.step(0.25));
+    step_all(1, 0.25, world, other);
     CHECK(world.state(cb::AgentId{0}).x == doctest::Approx(other.state(cb::AgentId{0}).x).epsilon(1e-12));
   }
 }
@@ -271,19 +247,16 @@ TEST_CASE("behind a standing vehicle, keeping the gap leaves room for a change w
   }
 }
 
-TEST_CASE("random actions repeat in runs and copies, differ between seeds, and all occur") {
-  auto const run = [](std::uint64_t seed, bool with_copies) {
+TEST_CASE("random actions repeat, differ between seeds, and all occur") {
+  auto const run = [](std::uint64_t seed) {
     World world(straight_road(3, 2000.0), {.seed = seed});
     for (int i = 0; i < 5; ++i)
       world.add({.position = {100 + 60.0 * i, -5.25}, .speed = 10, .behavior = cb::RandomMacroActions{}});
-    for (int i = 0; i < 80; ++i) {
-      if (with_copies) world = World(world);
-      CHECK(world.step(0.25));
-    }
+    step_all(80, 0.25, world);
     return world.frame();
   };
-  CHECK(run(1, false) == run(1, true));
-  CHECK(run(1, false) != run(2, false));
+  CHECK(run(1) == run(1));
+  CHECK(run(1) != run(2));
   World world(straight_road(3, 2000.0));
   auto const id =
       world.add({.position = {100, -5.25}, .speed = 10, .behavior = cb::RandomMacroActions{.interval = 0.5}});
@@ -388,13 +361,7 @@ TEST_CASE("an action that keeps the gap is no faster than car following permits,
 TEST_CASE(
     "driver actions obey a red light although somebody stands beyond it, and leave room behind who stands before it") {
   using Ruled = cb::DriverActions<cb::Intersection>;
-  auto const map = cb::parse_opendrive(R"(<OpenDRIVE><road id="0" length="500" junction="-1"><planView>
-      <geometry s="0" x="0" y="0" hdg="0" length="500"><line/></geometry></planView><lanes><laneSection s="0"><center>
-      <lane id="0"/></center><right><lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>
-      <lane id="-2" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></right></laneSection></lanes>
-      <signals><signal id="1" s="200" t="-8" type="1000001" subtype="-1" orientation="+" dynamic="yes"/></signals></road>
-      </OpenDRIVE>)")
-                       .map;
+  auto const map = support::road_with_signal("1000001", 2);
   REQUIRE(map->lights().size() == 1);
   for (double const stands_at : {225.0, 260.0, 120.0}) {
     CAPTURE(stands_at);
@@ -422,19 +389,19 @@ TEST_CASE("driver actions: its driver's plan, unless a macro action is chosen or
   using Crossing = Traffic<Junction, cb::Intersection>;
   auto const crossing = [](Crossing::Behavior const& own) {
     Crossing world(own_map("intersection_4way.xodr"));
-    auto const routed = [&](double x, double y, double heading, cb::AgentId id, Crossing::Behavior const& behavior) {
-      world.add({.position = {x, y}, .heading = heading, .speed = 8.0, .behavior = behavior, .id = id});
-    };
-    routed(-40.0, -1.75, 0.0, cb::AgentId{1}, own);
-    routed(1.75, -38.0, M_PI / 2, cb::AgentId{2}, cb::Intersection{});
+    world.add({.position = {-40.0, -1.75}, .heading = 0.0, .speed = 8.0, .behavior = own, .id = cb::AgentId{1}});
+    world.add({.position = {1.75, -38.0},
+               .heading = cb::geometry::pi / 2,
+               .speed = 8.0,
+               .behavior = cb::Intersection{},
+               .id = cb::AgentId{2}});
     return world;
   };
   cb::Intersection const driver{.idm = {.desired_speed = 9.0}};
   auto own = crossing(Junction{.driver = driver}), alike = crossing(driver);
   double slowest = 8.0;
   for (int i = 0; i < 60; ++i) {
-    REQUIRE(own.step(0.2));
-    REQUIRE(alike.step(0.2));
+    step_all(1, 0.2, own, alike);
     CHECK(own.state(cb::AgentId{1}) == alike.state(cb::AgentId{1}));
     CHECK(own.state(cb::AgentId{2}) == alike.state(cb::AgentId{2}));
     slowest = std::min(slowest, own.state(cb::AgentId{1}).speed);
@@ -449,14 +416,12 @@ TEST_CASE("driver actions: its driver's plan, unless a macro action is chosen or
   auto const two = plain.add({.position = {100, -5.25}, .speed = 10, .behavior = cb::MacroActions{}});
   mixed.memory<Junction>(one).choose(left);
   plain.memory<cb::MacroActions>(two).choose(left);
-  REQUIRE(mixed.step(0.2));
-  REQUIRE(plain.step(0.2));
+  step_all(1, 0.2, mixed, plain);
   mixed.memory<Junction>(one).choose(Junction::drive);  // in the middle of the change
   plain.memory<cb::MacroActions>(two).choose(number_of(Kind::keep_gap));
   for (int i = 0; i < 30 && plain.memory<cb::MacroActions>(two).change.active(); ++i) {
     CHECK(mixed.state(one) == plain.state(two));
-    REQUIRE(mixed.step(0.2));
-    REQUIRE(plain.step(0.2));
+    step_all(1, 0.2, mixed, plain);
   }
   CHECK(mixed.state(one) == plain.state(two));
   CHECK(mixed.state(one).y == doctest::Approx(-1.75).epsilon(0.05));

@@ -22,17 +22,6 @@ double potential(cb::SocialForceParameters const& p, double x, double y, Vector 
 
 }  // namespace
 
-TEST_CASE("the parameters are as published and within their ranges") {
-  cb::SocialForceParameters const p;
-  CHECK_NOTHROW(cb::check_parameters(p));
-  CHECK(p.repulsion == 2.1);
-  CHECK(p.repulsion_range == 0.3);
-  CHECK(p.border_repulsion == 10.0);
-  CHECK(p.border_range == 0.2);
-  CHECK(p.relaxation_time == 0.5);
-  CHECK(p.stride_time == 2.0);
-}
-
 TEST_CASE("the repulsion is the negative gradient of the elliptical potential") {
   cb::SocialForceParameters const p;
   cb::RandomStream random(3, 0, 0);
