@@ -146,28 +146,21 @@ TEST_CASE("a truck, a pedestrian and a user's own vehicle move in one world, eac
   World<Set> mixed(straight_road(60, 400));
   cb::SingleTrack const truck{.wheel_base = 5.8, .highest_acceleration = 1.0};
   cb::KinematicPoint const pedestrian;
+  cb::ExternalInput::Memory const input{1.2, 0.1};
   auto const t = enter<Set>(mixed, 8.0, truck, -30), p = enter<Set>(mixed, 1.0, pedestrian, -60),
              own = enter<Set>(mixed, 3.0, Tank{}, -90);
-  World<cb::SingleTrack> trucks(straight_road(60, 400));
-  World<cb::KinematicPoint> pedestrians(straight_road(60, 400));
-  World<Tank> tanks(straight_road(60, 400));
-  auto const t1 = enter(trucks, 8.0, truck, -30);
-  auto const p1 = enter(pedestrians, 1.0, pedestrian, -60);
-  auto const own1 = enter(tanks, 3.0, Tank{}, -90);
-  cb::ExternalInput::Memory const input{1.2, 0.1};
   for (auto const id : {t, p, own}) mixed.memory<cb::ExternalInput>(id) = input;
-  trucks.memory<cb::ExternalInput>(t1) = input;
-  pedestrians.memory<cb::ExternalInput>(p1) = input;
-  tanks.memory<cb::ExternalInput>(own1) = input;
-  for (int i = 0; i < 10; ++i) {
-    REQUIRE(mixed.step(0.1));
-    REQUIRE(trucks.step(0.1));
-    REQUIRE(pedestrians.step(0.1));
-    REQUIRE(tanks.step(0.1));
-  }
-  CHECK(mixed.state(t) == trucks.state(t1));
-  CHECK(mixed.state(p) == pedestrians.state(p1));
-  CHECK(mixed.state(own) == tanks.state(own1));
+  for (int i = 0; i < 10; ++i) REQUIRE(mixed.step(0.1));
+  auto const alone = [&]<class Model>(Model const& model, double speed, double y) {
+    World<Model> world(straight_road(60, 400));
+    auto const id = enter(world, speed, model, y);
+    world.template memory<cb::ExternalInput>(id) = input;
+    for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.1));
+    return world.state(id);
+  };
+  CHECK(mixed.state(t) == alone(truck, 8.0, -30));
+  CHECK(mixed.state(p) == alone(pedestrian, 1.0, -60));
+  CHECK(mixed.state(own) == alone(Tank{}, 3.0, -90));
   CHECK(mixed.roster().agents[0].dynamics.wheel_base() == 5.8);
   CHECK(mixed.record(t).action.acceleration == 1.0);
 }

@@ -13,8 +13,8 @@ namespace cb = cambium;
 
 namespace {
 
-/// Where a vehicle is after `t` s whose wheels turn from straight at `rate` at a constant speed, by Simpson's rule over
-/// its heading, which is known in closed form: the integral of v tan(rate t) / L is -v / (L rate) ln cos(rate t).
+/// State after `t` [s] of a vehicle at a constant speed whose wheels turn from straight at `rate`: by Simpson's rule
+/// over its heading, which is known in closed form: the integral of v tan(rate t) / L is -v / (L rate) ln cos(rate t).
 cb::SingleTrackSteering::State on_spiral(cb::SingleTrackSteering const& model, double speed, double rate, double t) {
   auto const heading = [&](double u) { return -speed / (model.wheel_base * rate) * std::log(std::cos(rate * u)); };
   int const parts = 2000;
@@ -74,7 +74,7 @@ TEST_CASE("a driver's steering angle is reached at the rate's limit and kept") {
   CHECK(model.limited({0.0, -1.0}, {.steering = 0.5}).steering_rate == -0.4);
 }
 
-TEST_CASE("float and dual numbers go through the model that steers at a rate") {
+TEST_CASE("the model that steers at a rate takes floats and dual numbers") {
   cb::SingleTrackSteering const model;
   cb::BasicSteeringState<float> const small{0.0f, 0.0f, 0.0f, 0.3f, 9.0f, 0.1f};
   auto const rounded = cb::rk4_step(model, small, cb::SteeringRateInput<float>{1.0f, 0.2f}, 0.2);

@@ -18,8 +18,8 @@ namespace cb = cambium;
 
 namespace {
 
-/// Where a vehicle is after `t` s that starts at the origin along +x and holds its steering and its acceleration: on a
-/// circle, as far along it as it has driven.
+/// State after `t` [s] of a vehicle that starts at the origin along +x and holds its steering and its acceleration: it
+/// drives along a circle.
 cb::State on_circle(cb::SingleTrack const& model, cb::SingleTrack::Input const& u, double speed, double t) {
   double const radius = model.wheel_base / std::tan(u.steering);
   double const driven = speed * t + u.acceleration * t * t / 2, angle = driven / radius;

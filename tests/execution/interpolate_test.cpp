@@ -105,18 +105,6 @@ TEST_CASE("two samples of one time do not disturb") {
   CHECK(execute(plan, 0.6).state.x == doctest::Approx(0.6));
 }
 
-TEST_CASE("a time between two samples lies on the line between these, not on that through the first two as in BARK") {
-  cb::BasicPlan<cb::State> plan;
-  for (int i = 0; i < 5; ++i) plan.trajectory.push_back({.time = 0.2 * i, .x = 1.0 * i * i});
-  for (int i = 0; i < 4; ++i)
-    for (double const share : {0.25, 0.5, 0.75}) {
-      auto const at =
-          cb::InterpolateExecution{}.execute(plan, plan.trajectory.front(), cb::SingleTrack{}, 0.2 * (i + share));
-      REQUIRE(at.valid);
-      CHECK(at.state.x == doctest::Approx(i * i + share * (2 * i + 1)));  // BARK: i + share
-    }
-}
-
 TEST_CASE(
     "fields that a vehicle model adds to its state are interpolated too, and at the time of a sample the state is the "
     "sample") {

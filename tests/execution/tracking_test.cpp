@@ -77,6 +77,13 @@ Errors follow(Execution const& execution, Dynamics const& dynamics, Course const
   return errors;
 }
 
+/// A plan of one state.
+cb::BasicPlan<cb::State> to(cb::State const& state) {
+  cb::BasicPlan<cb::State> plan;
+  plan.trajectory.push_back(state);
+  return plan;
+}
+
 /// The states after `steps` steps of 0.1 s of holding 10 m/s straight on.
 template <class Execution>
 std::vector<cb::State> straight_on(Execution const& execution, int steps, std::uint64_t seed = 3) {
@@ -84,8 +91,7 @@ std::vector<cb::State> straight_on(Execution const& execution, int steps, std::u
   typename Execution::template Memory<cb::State> memory;
   std::vector<cb::State> states;
   for (int i = 0; i < steps; ++i) {
-    cb::BasicPlan<cb::State> plan;
-    plan.trajectory.push_back({.time = 0.1 * (i + 1), .x = 1.0 * (i + 1), .speed = 10.0});
+    auto const plan = to({.time = 0.1 * (i + 1), .x = 1.0 * (i + 1), .speed = 10.0});
     cb::RandomStream random(seed, 1, static_cast<std::uint32_t>(i));
     x = execution.execute(plan, x, cb::SingleTrack{}, 0.1 * (i + 1), memory, random).state;
     states.push_back(x);
@@ -121,22 +127,23 @@ TEST_CASE_TEMPLATE("every vehicle model is tracked with", Model, cb::SingleTrack
   Model model{};
   if constexpr (std::is_same_v<Model, cb::KinematicPoint>) model.highest_speed = 50;
   using State = typename Model::State;
-  auto const stanley = follow(cb::StanleyExecution{}, model, lane_change<State>, 9.0);
-  auto const lqr = follow(cb::LqrExecution{}, model, lane_change<State>, 9.0);
-  CHECK(stanley.across < 0.4);
-  CHECK(lqr.across < 0.4);
-  CHECK(stanley.last_across < 0.05);
-  CHECK(lqr.last_across < 0.05);
+  for (auto const& errors : {follow(cb::StanleyExecution{}, model, lane_change<State>, 9.0),
+                             follow(cb::LqrExecution{}, model, lane_change<State>, 9.0)}) {
+    CHECK(errors.across < 0.4);
+    CHECK(errors.last_across < 0.05);
+  }
 }
 
 TEST_CASE("nothing is tracked beyond the plan's end, and nothing without a plan") {
   cb::TrackingMemory<cb::State> memory;
   cb::RandomStream random(1, 1, 1);
-  cb::BasicPlan<cb::State> plan;
-  CHECK_FALSE(cb::StanleyExecution{}.execute(plan, cb::State{}, cb::SingleTrack{}, 0.2, memory, random).valid);
-  plan.trajectory.push_back({.time = 0.1, .x = 1.0, .speed = 10.0});
-  CHECK_FALSE(cb::StanleyExecution{}.execute(plan, cb::State{}, cb::SingleTrack{}, 0.2, memory, random).valid);
-  CHECK(cb::StanleyExecution{}.execute(plan, cb::State{}, cb::SingleTrack{}, 0.1, memory, random).valid);
+  auto const is_tracked = [&](cb::BasicPlan<cb::State> const& plan, double time) {
+    return cb::StanleyExecution{}.execute(plan, cb::State{}, cb::SingleTrack{}, time, memory, random).valid;
+  };
+  auto const plan = to({.time = 0.1, .x = 1.0, .speed = 10.0});
+  CHECK_FALSE(is_tracked({}, 0.2));
+  CHECK_FALSE(is_tracked(plan, 0.2));
+  CHECK(is_tracked(plan, 0.1));
 }
 
 TEST_CASE("commands come into effect after the delay, to the period in which they are given") {
@@ -150,8 +157,7 @@ TEST_CASE("commands come into effect after the delay, to the period in which the
     double first = -1.0;
     for (int i = 0; i < 100 && first < 0.0; ++i) {
       double const t = 0.02 * (i + 1);
-      cb::BasicPlan<cb::State> plan;
-      plan.trajectory.push_back({.time = t, .x = 10.0 * t - t * t, .speed = 10.0 - 2.0 * t});
+      auto const plan = to({.time = t, .x = 10.0 * t - t * t, .speed = 10.0 - 2.0 * t});
       cb::RandomStream random(1, 1, 1);
       x = execution.execute(plan, x, cb::SingleTrack{}, t, memory, random).state;
       if (x.speed < 10.0 - 1e-6) first = t - 0.02;
@@ -182,8 +188,7 @@ TEST_CASE("the noise of the actuators has the moments asked for") {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   for (int i = 0; i < steps; ++i) {
-    cb::BasicPlan<cb::State> plan;
-    plan.trajectory.push_back({.time = 0.1, .x = 1.0, .speed = 10.0});
+    auto const plan = to({.time = 0.1, .x = 1.0, .speed = 10.0});
     memory = {};
     cb::RandomStream random(3, 1, static_cast<std::uint32_t>(i));
     auto const x = execution.execute(plan, cb::State{.speed = 10.0}, cb::SingleTrack{}, 0.1, memory, random).state;
@@ -227,8 +232,7 @@ TEST_CASE(
       lqr.actuation = {.period = 0.05, .delay = delay};
       double const interval = delay > 0.0 ? 0.25 * delay : step / std::ceil(step / 0.05 - 1e-9);
       CHECK(lqr.actuation.interval(step) == doctest::Approx(interval));
-      cb::BasicPlan<cb::State> plan;
-      plan.trajectory.push_back({.speed = 10.0});
+      auto plan = to({.speed = 10.0});
       plan.trajectory.push_back({.time = step, .x = 10.0 * step, .speed = 10.0});
       cb::TrackingMemory<cb::State> memory;
       cb::RandomStream random(1, 1, 1);

@@ -39,23 +39,18 @@ TEST_CASE("a polygon with a notch is not reached by a vehicle over the notch") {
   CHECK_FALSE(cb::at_goal(goal, at(8, 1)));  // all four corners are inside
 }
 
-TEST_CASE("a lane is reached with the reference point between two positions, both included") {
+TEST_CASE("a lane is reached with the reference point between two positions, both included, or without any anywhere") {
   cb::Goal const goal = cb::ReachLane{static_cast<cb::LaneId>(3), 10.0, 20.0};
   CHECK_FALSE(cb::at_goal(goal, at(9.99, 0)));
   CHECK(cb::at_goal(goal, at(10, 0)));
   CHECK(cb::at_goal(goal, at(20, 0)));
   CHECK_FALSE(cb::at_goal(goal, at(20.01, 0)));
   CHECK_FALSE(cb::at_goal(cb::ReachLane{static_cast<cb::LaneId>(4), 10.0, 20.0}, at(15, 0)));
-}
-
-TEST_CASE("a lane without positions is reached anywhere in it") {
-  cb::Goal const goal = cb::ReachLane{static_cast<cb::LaneId>(3)};
-  CHECK(cb::at_goal(goal, at(0, 0)));
-  CHECK(cb::at_goal(goal, at(1e6, 0)));
+  for (double const x : {0.0, 1e6}) CHECK(cb::at_goal(cb::ReachLane{static_cast<cb::LaneId>(3)}, at(x, 0)));
 }
 
 TEST_CASE("limits of the heading wrap, and go counter-clockwise from the first to the second") {
-  constexpr double pi = 3.14159265358979323846;
+  using cb::geometry::pi;
   auto const heads = [](double from, double to, double heading) {
     return cb::at_goal(cb::StateLimits{.heading_from = from, .heading_to = to}, at(0, 0, heading));
   };

@@ -170,11 +170,8 @@ TEST_CASE("a goal with a number that is none, or out of its range, is refused by
     CHECK_THROWS_AS(world.add(driver(100, goal)), cb::ParameterError);
   }
   CHECK(world.size() == 0);
-  try {
-    world.add(driver(100, cb::ReachLaneEnd{-1.0}));
-  } catch (cb::ParameterError const& error) {
-    CHECK(std::string(error.what()).find("agent 0: reach_lane_end.distance: is -1 m") != std::string::npos);
-  }
+  CHECK_THROWS_WITH_AS(world.add(driver(100, cb::ReachLaneEnd{-1.0})),
+                       doctest::Contains("agent 0: reach_lane_end.distance: is -1 m"), cb::ParameterError);
   CHECK_NOTHROW(world.add(driver(100, cb::LaneLimits{})));  // infinite limits are none
 }
 
@@ -229,14 +226,14 @@ struct PassFast {
   bool at_goal(cb::GoalSituation const& at) const { return at.speed >= speed && at.pose.x >= x; }
 };
 
-/// The least that a goal of one's own needs.
+/// The least that a user's own goal needs.
 struct NeverAgain {
   bool at_goal(cb::GoalSituation const& at) const { return at.pose.x > 150.0; }
 };
 
 }  // namespace
 
-TEST_CASE("a goal of one's own is reached as its function says, alone and as a part of others") {
+TEST_CASE("a user's own goal is reached as its function says, alone and as a part of others") {
   Sim world(straight_road(2, 1000.0));
   auto const fast = world.add(driver(100, PassFast{.x = 130.0}, 15.0));
   auto const slow = world.add(driver(60, PassFast{.x = 70.0}, 10.0));
@@ -260,7 +257,7 @@ TEST_CASE("a goal of one's own is reached as its function says, alone and as a p
   CHECK(future.reached_goal(fast));
 }
 
-TEST_CASE("the route of an agent leads to the lanes that its own kind of goal names") {
+TEST_CASE("the route of an agent leads to the lanes that a user's own goal names") {
   Sim world(support::own_map("intersection_4way.xodr"));
   auto const& map = world.map();
   int routes = 0;
@@ -281,7 +278,7 @@ TEST_CASE("the route of an agent leads to the lanes that its own kind of goal na
                        doctest::Contains("which the map does not have"), cb::WorldError);
 }
 
-TEST_CASE("a goal of one's own is checked by its description and its own check, compared, and given back") {
+TEST_CASE("a user's own goal is checked by its description and its own check, compared, and given back") {
   Sim world(straight_road(2, 1000.0));
   CHECK_THROWS_WITH_AS(world.add(driver(100, PassFast{.speed = -1.0})), doctest::Contains("pass_fast.speed: is -1 m/s"),
                        cb::ParameterError);
