@@ -80,7 +80,7 @@ struct Temperament {
   double speed_factor = 1.0;          ///< `RoadRules::speed_factor` [-]
   double time_margin = 1.0;           ///< `Intersection::time_margin` [s]
 
-  /// `driver` with this temperament: all of the above that it has, in what it wraps, too. The rest stays.
+  /// `driver` with this temperament: sets those of the above that it has, also in the driver that it wraps.
   template <class Driver>
   [[nodiscard]] constexpr Driver of(Driver driver = {}) const {
     if constexpr (requires { driver.nominal; }) driver.nominal = of(driver.nominal);

@@ -41,12 +41,12 @@ template <class Law, class View>
 }  // namespace detail
 
 /// What a driver heeds on the road besides other road users, shared by all driver models. A model that keeps its lane
-/// has it all in one:
+/// gets everything in one call:
 ///
 ///   IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));   // speed limits lower the desired speed
 ///   return rules.keep_lane(view, Strictest(law), idm, tolerance, dt, memory);
 ///
-/// Another one uses its parts in its `plan`:
+/// Other models use the parts in their `plan`:
 ///
 ///   rules.heed(view, ahead, memory);                                       // leader and lane end are constraints
 ///   rules.bound(view, idm, s, speed, law.motion(...), dt, memory);         // bends and signals bound the motion
