@@ -35,25 +35,18 @@ std::shared_ptr<cb::Map const> street(double width, double curvature = 0.0, bool
   return support::map_of(std::move(road));
 }
 
-template <class Behavior>
-Behavior with_rules(cb::RoadRules const& rules, cb::IdmParameters const& idm) {
+/// A cyclist of a model that follows by IDM.
+template <class Behavior = cb::IdmClassic>
+Behavior cyclist(double desired_speed = 5.0) {
+  auto idm = cb::presets::cyclist();
+  idm.desired_speed = desired_speed;
   Behavior behavior;
-  behavior.rules = rules;
-  if constexpr (requires { behavior.idm; }) behavior.idm = idm;
+  behavior.rules = cb::presets::cyclist_rules();
+  if constexpr (requires { behavior.idm; })
+    behavior.idm = idm;
+  else
+    cb::follow_as(behavior, idm);
   return behavior;
-}
-
-/// A cyclist of a model that has IDM parameters of its own.
-template <class Behavior>
-Behavior cyclist_of() {
-  return with_rules<Behavior>(cb::presets::cyclist_rules(), cb::presets::cyclist());
-}
-
-cb::IdmClassic cyclist(double desired_speed = 5.0) {
-  auto result = cb::idm_classic(cb::presets::cyclist());
-  result.desired_speed = desired_speed;
-  result.rules = cb::presets::cyclist_rules();
-  return result;
 }
 
 /// Adds an agent `lateral` [m] to the left of the middle of the first lane, `s` [m] after its begin.
@@ -106,13 +99,7 @@ TEST_CASE_TEMPLATE("a cyclist keeps to the outer side of its lane, straight on a
         CAPTURE(curvature);
         CAPTURE(right_hand);
         Sim world(street(width, curvature, right_hand));
-        auto const driver = [&] {
-          if constexpr (std::is_same_v<Behavior, cb::IdmClassic>)
-            return cyclist();
-          else
-            return cyclist_of<Behavior>();
-        }();
-        auto const id = enter(world, 10.0, 4.0, driver, cb::geometry::bicycle());
+        auto const id = enter(world, 10.0, 4.0, cyclist<Behavior>(), cb::geometry::bicycle());
         double const outwards = 0.5 * width - 0.4 - 0.325;
         double most = 0.0, least = 1e9;
         for (int i = 0; i < 250; ++i) {
