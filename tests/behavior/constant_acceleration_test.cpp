@@ -2,6 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
+#include "cambium/behavior/law/braking.hpp"
+
 #include "../world/fixtures.hpp"
 
 using namespace fixtures;
@@ -43,6 +47,19 @@ TEST_CASE("two halves of a step equal the whole step, also across kinks") {
       CHECK(second.speed == doctest::Approx(whole.speed));
       CHECK(whole.distance >= 0.0);
     }
+}
+
+TEST_CASE("the time to cover a distance is that after which a constant acceleration has covered it") {
+  for (double const distance : {0.5, 10.0, 200.0})
+    for (double const speed : {0.0, 7.0, 20.0})
+      for (double const a : {0.8, 3.0}) {
+        double const time = cb::time_to_cover(distance, speed, a, 20.0);
+        cb::ConstantAcceleration const model{.acceleration = a, .highest_speed = 20.0};
+        CHECK(model.motion(speed, time).distance == doctest::Approx(distance));
+      }
+  CHECK(cb::time_to_cover(0.0, 0.0, 1.0, 20.0) == 0.0);
+  CHECK(cb::time_to_cover(50.0, 25.0, 1.0, 20.0) == doctest::Approx(2.0));
+  CHECK(std::isinf(cb::time_to_cover(50.0, 0.0, 0.0, 20.0)));
 }
 
 TEST_CASE(

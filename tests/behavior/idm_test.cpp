@@ -17,6 +17,8 @@ TEST_CASE("a follower at the equilibrium gap keeps its speed") {
     CHECK(gap == doctest::Approx((2.0 + 1.5 * v) / std::sqrt(1 - std::pow(v / 15.0, 4))));
   }
   CHECK(std::isinf(cb::idm_equilibrium_gap(p, 15.0)));
+  CHECK(cb::idm_equilibrium_speed(p, cb::idm_equilibrium_gap(p, 10.0)) == doctest::Approx(10.0));
+  CHECK(cb::idm_equilibrium_speed(p, 1.9) == doctest::Approx(0.0));
 }
 
 TEST_CASE("a closed gap causes the hardest braking") {

@@ -27,6 +27,11 @@ TEST_CASE("presets of pedestrians and cyclists are valid; a cyclist brakes no ha
 TEST_CASE("presets of drivers are valid and drive as their names say") {
   using namespace cb::presets;
   for (auto const& preset : all) CHECK_NOTHROW(cb::check_parameters(preset.parameters));
+  cb::IdmParameters const unusual{1.0, 2.0, 3.0, 4.0, 5.0, 6.0, -7.0, 8.5};
+  CHECK(cb::idm_acceleration(cb::idm_classic(unusual), 0.5, 9.0, 0.1) == cb::idm_acceleration(unusual, 0.5, 9.0, 0.1));
+  cb::IdmParameters followed;
+  cb::follow_as(followed, unusual);
+  CHECK(cb::equal_parameters(followed, unusual));
   double const gap = 40.0, speed = 25.0, leader = 24.0;
   double const hasty = cb::idm_acceleration(aggressive(), speed, gap, leader),
                usual = cb::idm_acceleration(kesting_2010_car(), speed, gap, leader),
