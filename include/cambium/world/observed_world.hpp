@@ -31,7 +31,7 @@ namespace cambium {
 /// and objects. It does not alter the order of the visible road users along a lane, nor the agent's own lane corridor,
 /// which the view takes from the true positions.
 ///
-/// `World::truth` gives the same view of the world as it is, to those who judge an agent.
+/// `World::truth` gives the same view of the true world, for evaluators.
 template <class World, bool perfect = World::Observer::perfect>
 class ObservedWorld {
  public:
@@ -79,44 +79,32 @@ class ObservedWorld {
 
   /// Next road user ahead (behind) along the agent's own lane corridor; nothing if none is within `Look::distance`.
   /// O(1) if that road user is in the same lane.
-  [[nodiscard]] std::optional<RoadUser> ahead(Look const& look = {}) const {
-    return nearer<1>(
-        place(), look,
-        seen(world_->traffic().front(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), 1));
-  }
-  [[nodiscard]] std::optional<RoadUser> behind(Look const& look = {}) const {
-    return nearer<-1>(
-        place(), look,
-        seen(world_->traffic().rear(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), -1));
-  }
+  [[nodiscard]] std::optional<RoadUser> ahead(Look const& look = {}) const { return next<1>(look); }
+  [[nodiscard]] std::optional<RoadUser> behind(Look const& look = {}) const { return next<-1>(look); }
 
   /// Calls `f(RoadUser)` for the next road user ahead in the agent's own lane corridor, and for the next one in each
   /// lane that merges into it or has just split off: `ahead` is the one with the smallest gap, but not always the one
   /// that demands the most caution. O(1) if there are no such lanes, else O(feeders), plus a search in each.
   template <class F>
   void each_ahead(Look const& look, F&& f) const {
-    world_->traffic().each_front(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic(),
-                                 [&](RoadUser const& found) { f(seen(found, 1)); });
+    index().each_front(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic(),
+                       [&](RoadUser const& found) { f(seen(found, 1)); });
     if (auto const other = nearer<1>(place(), look, std::nullopt)) f(*other);
   }
 
   /// Next road user ahead of (behind) a place on any lane corridor of the agent's road, as if the agent were there.
   /// O(log n).
   [[nodiscard]] std::optional<RoadUser> ahead(map::LanePlace const& from, Look const& look = {}) const {
-    auto const& along = road().corridors[from.corridor];
-    return nearer<1>(from, look,
-                     seen(world_->traffic().front(along, query(truth(from), look), objects_on_lanes(), false), 1));
+    return next<1>(from, look);
   }
   [[nodiscard]] std::optional<RoadUser> behind(map::LanePlace const& from, Look const& look = {}) const {
-    auto const& along = road().corridors[from.corridor];
-    return nearer<-1>(from, look,
-                      seen(world_->traffic().rear(along, query(truth(from), look), objects_on_lanes(), false), -1));
+    return next<-1>(from, look);
   }
 
   /// The foremost agent, not beyond corridor position `limit`, in the lanes that merge into the agent's own corridor at
   /// `merge` (see `Feeder::free_until`). O(feeders), plus a search in each.
   [[nodiscard]] std::optional<RoadUser> merging(double merge, double limit) const {
-    return seen(world_->traffic().merging(corridor(), merge, limit, query(record_->lane, {})), 1);
+    return seen(index().merging(corridor(), merge, limit, query(record_->lane, {})), 1);
   }
 
   /// Calls `f(RoadUser)` for every agent on the lane corridor of a place, or reaching into it, within `distance` [m] of
@@ -127,23 +115,19 @@ class ObservedWorld {
     auto const& along = road().corridors[from.corridor];
     TrafficQuery const own = plain_query(truth(from), {});
     auto const sees_object = [this](Slot object) { return this->sees_object(object); };
-    auto const visit = [&](int sign) {
-      return [&f, &own, this, sign](TrafficEntry const& entry, double way) {
+    auto const find = [&]<int sign>(std::integral_constant<int, sign>) -> std::optional<RoadUser> {
+      auto const visit = [&](TrafficEntry const& entry, double way) {
         if (!sees(entry.slot)) return false;
         double const gap = sign > 0 ? way - entry.rear - own.front : way - entry.front - own.rear;
         f(seen(TrafficIndex::user_of(entry, false, gap, own.s + sign * way), sign));
         return false;
       };
-    };
-    auto const find = [&](int sign) -> std::optional<RoadUser> {
-      auto const all = visit(sign);
-      SightedQuery<decltype(all), decltype(sees_object)> const query{own, all, sees_object, distance};
-      auto const& index = world_->traffic();
-      auto const next = sign > 0 ? index.front(along, query, objects_on_lanes(), false)
-                                 : index.rear(along, query, objects_on_lanes(), false);
+      SightedQuery<decltype(visit), decltype(sees_object)> const query{own, visit, sees_object, distance};
+      auto const next = index().template next<sign>(along, query, objects_on_lanes(), false);
       return next && is_valid(next->object) ? seen(next, sign) : std::nullopt;
     };
-    auto const object_ahead = find(1), object_behind = find(-1);
+    auto const object_ahead = find(std::integral_constant<int, 1>()),
+               object_behind = find(std::integral_constant<int, -1>());
     if (object_ahead) f(*object_ahead);
     if (object_behind) f(*object_behind);
   }
@@ -162,20 +146,20 @@ class ObservedWorld {
   /// lane of its own, such as a pedestrian on a free corridor, in the order of ids. O(such agents in the world).
   template <class F>
   void off_lanes(double distance, F&& f) const {
-    for (Slot const slot : world_->traffic().off_lanes())
+    for (Slot const slot : index().off_lanes())
       if (detail::is_near(*world_, slot_, slot, distance) && sees(slot)) f(user(slot));
   }
   /// Whether there are such agents in the world, seen or not. O(1).
-  [[nodiscard]] bool anybody_off_lanes() const { return !world_->traffic().off_lanes().empty(); }
+  [[nodiscard]] bool anybody_off_lanes() const { return !index().off_lanes().empty(); }
   /// Whether an agent of the world drives aside from the middle of its lane and leaves `TrafficIndex::room_to_pass`
   /// beside itself. O(1).
-  [[nodiscard]] bool anybody_leaves_room() const { return world_->traffic().anybody_leaves_room(); }
+  [[nodiscard]] bool anybody_leaves_room() const { return index().anybody_leaves_room(); }
 
   /// Calls `f(RoadUser)` for every other road user that reaches into lane coordinates `index_begin` to `index_end` of
   /// one lane (see `Lane::index_begin`); `s` is then the lane coordinate. O(log n + road users near).
   template <class F>
   void on_lane(double index_begin, double index_end, F&& f) const {
-    world_->traffic().for_each_in(index_begin, index_end, objects_on_lanes(), [&](auto const& entry, bool is_object) {
+    index().for_each_in(index_begin, index_end, objects_on_lanes(), [&](auto const& entry, bool is_object) {
       bool const counts = is_object ? sees_object(entry.slot) : entry.slot != slot_ && sees(entry.slot);
       if (counts) f(seen(TrafficIndex::user_of(entry, is_object, 0.0, entry.position), 0));
     });
@@ -264,8 +248,9 @@ class ObservedWorld {
   }
 
  private:
+  [[nodiscard]] TrafficIndex const& index() const { return world_->traffic(); }
   /// Whether the index has an entry for the agent; without one, a query searches for its place.
-  [[nodiscard]] bool in_traffic() const { return world_->traffic().has(slot_); }
+  [[nodiscard]] bool in_traffic() const { return index().has(slot_); }
   [[nodiscard]] auto const& record(Slot slot) const { return world_->frame().agents[index_of(slot)]; }
   [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
 
@@ -320,6 +305,20 @@ class ObservedWorld {
     }
   }
 
+  /// Next road user ahead (`sign` 1) or behind (-1), of the agent or of a place.
+  template <int sign>
+  [[nodiscard]] std::optional<RoadUser> next(Look const& look) const {
+    auto const found =
+        index().template next<sign>(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic());
+    return nearer<sign>(place(), look, seen(found, sign));
+  }
+  template <int sign>
+  [[nodiscard]] std::optional<RoadUser> next(map::LanePlace const& from, Look const& look) const {
+    auto const& along = road().corridors[from.corridor];
+    auto const found = index().template next<sign>(along, query(truth(from), look), objects_on_lanes(), false);
+    return nearer<sign>(from, look, seen(found, sign));
+  }
+
   /// `found`, or a nearer agent ahead (`sign` 1) or behind (-1) that is seen in the lane of `from` but drives in one
   /// beside. O(agents in those lanes as far as `found`).
   template <int sign>
@@ -363,8 +362,7 @@ class ObservedWorld {
         SightedQuery<decltype(sees), decltype(sees_no_object)> const sighted{query, sees, sees_no_object,
                                                                              query.distance};
         auto const& along = road().corridors[beside];
-        auto const& index = world_->traffic();
-        auto user = sign > 0 ? index.front(along, sighted, {}, false) : index.rear(along, sighted, {}, false);
+        auto user = index().template next<sign>(along, sighted, {}, false);
         if (!user) continue;
         double const s = seen_at(user->slot, start.s + (user->s - at.s)).s;
         user->gap = sign > 0 ? s - user->rear - from.s - shape().front : from.s - shape().rear - s - user->front;

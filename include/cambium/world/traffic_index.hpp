@@ -12,6 +12,7 @@
 
 #include "cambium/core/macros.hpp"
 #include "cambium/map/corridor/corridor.hpp"
+#include "cambium/world/detail/traffic_walk.hpp"
 #include "cambium/world/traffic_query.hpp"
 
 namespace cambium {
@@ -121,44 +122,35 @@ class TrafficIndex {
   /// An agent in the middle of a sidewalk or another lane that is not drivable is not among them.
   [[nodiscard]] std::span<Slot const> off_lanes() const { return reaching_.off_lanes; }
 
-  /// Next road user ahead on `corridor`. `own` says that the searching agent's own entry lies on this corridor's piece,
-  /// which saves a binary search.
-  template <class Query>
-  [[nodiscard]] std::optional<RoadUser> front(map::LaneCorridor const& corridor, Query const& query,
-                                              std::span<TrafficEntry const> objects, bool own) const {
-    return front_from(own ? rank_[index_of(query.slot)] + 1 : upper(agents(), key(corridor, query), query.slot),
-                      corridor, query, objects);
+  /// Next road user on `corridor`, ahead (`sign` 1) or behind (-1). `own` says that the searching agent's own entry
+  /// lies on this corridor's piece, which saves a binary search.
+  template <int sign, class Query>
+  [[nodiscard]] std::optional<RoadUser> next(map::LaneCorridor const& corridor, Query const& query,
+                                             std::span<TrafficEntry const> objects, bool own) const {
+    auto const start = start_of<sign>(corridor, query, own);
+    Nearest best;
+    next_on_corridor<sign>(corridor, query, start, best);
+    if (crowded_ || !objects.empty() || !corridor.feeders.empty())
+      best = next_of_others<sign>(start, corridor, Query(query), objects, best);
+    return hit(best, objects);
   }
 
   /// Calls `f(RoadUser)` for the next road user ahead on `corridor` itself, then for the next one on each of its
-  /// feeders; `own` as in `front`.
+  /// feeders; `own` as in `next`.
   template <class Query, class F>
   void each_front(map::LaneCorridor const& corridor, Query const& query, std::span<TrafficEntry const> objects,
                   bool own, F&& f) const {
-    auto const start = own ? rank_[index_of(query.slot)] + 1 : upper(agents(), key(corridor, query), query.slot);
+    auto const start = start_of<1>(corridor, query, own);
     Nearest best;
-    front_on_corridor(corridor, query, start, best);
-    if (crowded_ || !objects.empty()) best = front_in_crowd(start, corridor, query, objects, best);
+    next_on_corridor<1>(corridor, query, start, best);
+    if (crowded_ || !objects.empty()) nearest_in_crowd<1>(start, corridor, query, objects, best);
     if (best.entry) f(*hit(best, objects));
     for (auto const& feeder : corridor.feeders) {
       if (feeder.begin > query.s + query.distance) break;
       Nearest next;
-      front_on_feeder(feeder, query, objects, next);
+      next_on_feeder<1>(feeder, query, objects, next);
       if (next.entry) f(*hit(next, objects));
     }
-  }
-
-  /// Next road user behind on `corridor`; `own` as in `front`.
-  template <class Query>
-  [[nodiscard]] std::optional<RoadUser> rear(map::LaneCorridor const& corridor, Query const& query,
-                                             std::span<TrafficEntry const> objects, bool own) const {
-    return rear_from(own ? rank_[index_of(query.slot)] : lower(agents(), key(corridor, query), query.slot), corridor,
-                     query, objects);
-  }
-
-  /// The query's position in the list of agents: one search that serves `front_from` and `rear_from`. O(log n).
-  [[nodiscard]] std::size_t find(map::LaneCorridor const& corridor, TrafficQuery const& query) const {
-    return lower(agents(), key(corridor, query), query.slot);
   }
 
   /// Calls `f(entry, is_object)` for every road user that reaches into lane coordinates `begin` to `end` of one lane,
@@ -168,34 +160,11 @@ class TrafficIndex {
     auto const visit = [&](List list, bool is_object) {
       if (list.empty()) return;
       double const longest = is_object ? longest_object : std::max(reach_.longest_front, reach_.longest_rear);
-      auto const* const last = list.data() + list.size();
-      for (auto const* e = first_entry(list, begin - longest); e != last && e->position <= end + longest; ++e)
-        if (e->position + e->front >= begin && e->position - e->rear <= end) f(*e, is_object);
+      for (auto walk = Walk<1>::from(list, begin - longest); walk && walk->position <= end + longest; ++walk)
+        if (walk->position + walk->front >= begin && walk->position - walk->rear <= end) f(*walk, is_object);
     };
     visit(agents(), false);
     visit(objects, true);
-  }
-
-  /// Next road user ahead; entry `start` of the agents is the first candidate on the query's piece.
-  template <class Query>
-  [[nodiscard]] std::optional<RoadUser> front_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                   Query const& query, std::span<TrafficEntry const> objects) const {
-    Nearest best;
-    front_on_corridor(corridor, query, start, best);
-    if (crowded_ || !objects.empty() || !corridor.feeders.empty())
-      best = front_of_others(start, corridor, Query(query), objects, best);
-    return hit(best, objects);
-  }
-
-  /// Next road user behind; the candidates among the agents lie before entry `start`.
-  template <class Query>
-  [[nodiscard]] std::optional<RoadUser> rear_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                  Query const& query, std::span<TrafficEntry const> objects) const {
-    Nearest best;
-    rear_on_corridor(corridor, query, start, best);
-    if (crowded_ || !objects.empty() || !corridor.feeders.empty())
-      best = rear_of_others(start, corridor, Query(query), objects, best);
-    return hit(best, objects);
   }
 
   /// The foremost agent in the lanes that merge into `corridor` at `merge`, measured by its image on the corridor and
@@ -208,11 +177,11 @@ class TrafficIndex {
     for (auto const& feeder : corridor.feeders) {
       if (feeder.free_until != merge || !feeder.is_still_to_merge() || feeder.begin > limit) continue;
       double const to = limit >= feeder.end ? feeder.index_end : feeder.index_at(limit);
-      for (auto i = upper(agents(), to, none<Slot>); i > 0 && agents_[i - 1].position >= feeder.index_begin; --i) {
-        auto const& entry = agents_[i - 1];
-        if (!is_own(i - 1)) continue;
+      for (auto walk = Walk<-1>::from(agents(), to); walk && walk->position >= feeder.index_begin; ++walk) {
+        auto const& entry = *walk;
+        if (!is_own(walk.at - 1)) continue;
         double const s = feeder.image(entry.position);
-        if (query.skips(entry, std::abs(s - query.s))) continue;
+        if (query.skips(entry, false, std::abs(s - query.s))) continue;
         if (!best || s > best_s) {
           best = &entry;
           best_s = s;
@@ -225,7 +194,9 @@ class TrafficIndex {
   }
 
  private:
-  using List = std::span<TrafficEntry const>;
+  using List = detail::TrafficList;
+  template <int sign>
+  using Walk = detail::TrafficWalk<sign>;
 
   [[nodiscard]] List agents() const { return {agents_.data(), size_}; }
 
@@ -267,9 +238,25 @@ class TrafficIndex {
     return user_of(e, is_object, best.gap, best.s);
   }
 
-  template <class Query>
-  [[nodiscard]] static bool skips(Query const& query, TrafficEntry const& entry, bool is_object, double distance) {
-    return is_object ? query.skips_object(entry, distance) : query.skips(entry, distance);
+  template <int sign, class Query>
+  [[nodiscard]] std::size_t start_of(map::LaneCorridor const& corridor, Query const& query, bool own) const {
+    if (own) return rank_[index_of(query.slot)] + (sign > 0 ? 1u : 0u);
+    return Walk<sign>::start(agents(), key(corridor, query), query.slot);
+  }
+  /// How far any agent reaches towards a searching one [m].
+  template <int sign>
+  [[nodiscard]] double longest_back() const {
+    return sign > 0 ? reach_.longest_rear : reach_.longest_front;
+  }
+  /// The gap [m] to something at `s` that reaches `back` towards the searching agent; likewise on a feeder.
+  template <int sign, class Query>
+  [[nodiscard]] static double gap_to(double s, double back, Query const& query) {
+    return sign > 0 ? s - back - (query.s + query.front) : query.s - query.rear - (s + back);
+  }
+  template <int sign, class Query>
+  [[nodiscard]] static double gap_to(double s, double back, Query const& query, map::Feeder const& feeder) {
+    return sign > 0 ? map::gap_before_merge(query.s + query.front, s - back, feeder.free_until)
+                    : map::gap_before_merge(s + back, query.s - query.rear, feeder.free_until);
   }
 
   template <class Query>
@@ -278,207 +265,102 @@ class TrafficIndex {
     return std::min(std::max(query.s, piece.begin - 1.0), piece.end + 1.0) + piece.index_offset;
   }
 
-  /// First entry that sorts after (position, slot).
-  [[nodiscard]] static std::size_t upper(List list, double position, Slot slot) {
-    auto i = first_at(list, position);
-    while (i < list.size() && list[i].position == position && list[i].slot <= slot) ++i;
-    return i;
-  }
-  /// First entry that does not sort before (position, slot).
-  [[nodiscard]] static std::size_t lower(List list, double position, Slot slot) {
-    auto i = first_at(list, position);
-    while (i < list.size() && list[i].position == position && list[i].slot < slot) ++i;
-    return i;
-  }
-
-  /// First entry at or beyond `position`.
-  [[nodiscard]] static std::size_t first_at(List list, double position) {
-    return static_cast<std::size_t>(first_entry(list, position) - list.data());
-  }
-  /// The same as a pointer: a binary search without unpredictable branches.
-  [[nodiscard]] static TrafficEntry const* first_entry(List list, double position) {
-    TrafficEntry const* base = list.data();
-    std::size_t left = list.size();
-    if (left == 0) return base;
-    while (left > 1) {
-      std::size_t const half = left / 2;
-      TrafficEntry const* const middle = base + half;
-      base = middle[-1].position < position ? middle : base;
-      left -= half;
-    }
-    return base + (base->position < position ? 1 : 0);
-  }
-
-  /// Next agent ahead on the corridor by reference point.
-  template <class Query>
-  void front_on_corridor(map::LaneCorridor const& corridor, Query const& query, std::size_t start,
-                         Nearest& best) const {
-    auto const list = agents();
-    auto const& pieces = corridor.pieces;
-    for (std::size_t p = index_of(query.piece), i = start;;) {
-      while (i < list.size() && query.skips(list[i], list[i].position - pieces[p].index_offset - query.s))
-        ++i;  // the searching agent's own entry in another lane
-      if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
-        double const s = list[i].position - pieces[p].index_offset;
-        if (s - query.s <= query.distance) best.offer(list[i], s, s - list[i].rear - (query.s + query.front));
+  /// Next agent on the corridor by reference point.
+  template <int sign, class Query>
+  void next_on_corridor(map::LaneCorridor const& corridor, Query const& query, std::size_t start, Nearest& best) const {
+    auto const* piece = &corridor.pieces[query.piece];
+    auto const* const last = sign > 0 ? &corridor.pieces.back() : &corridor.pieces.front();
+    for (Walk<sign> walk{agents(), start};; walk = Walk<sign>::into(agents(), *piece)) {
+      while (walk && query.skips(*walk, false, sign * (walk->position - piece->index_offset - query.s)))
+        ++walk;  // the searching agent's own entry in another lane
+      if (walk && walk.is_within(*piece)) {
+        double const s = walk->position - piece->index_offset;
+        if (sign * (s - query.s) <= query.distance) best.offer(*walk, s, gap_to<sign>(s, walk.reach_back(), query));
         return;
       }
-      if (++p == pieces.size() || pieces[p].begin - query.s > query.distance) return;
-      i = first_at(list, pieces[p].begin - 1.0 + pieces[p].index_offset);
+      if (piece == last) return;
+      piece += sign;
+      if ((sign > 0 ? piece->begin - query.s : query.s - piece->end) > query.distance) return;
     }
   }
 
-  template <class Query>
-  void rear_on_corridor(map::LaneCorridor const& corridor, Query const& query, std::size_t start, Nearest& best) const {
-    auto const list = agents();
-    auto const& pieces = corridor.pieces;
-    for (std::size_t p = index_of(query.piece), i = start;;) {  // candidates lie before i
-      while (i > 0 && query.skips(list[i - 1], query.s - (list[i - 1].position - pieces[p].index_offset))) --i;
-      if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
-        auto const& entry = list[i - 1];
-        double const s = entry.position - pieces[p].index_offset;
-        if (query.s - s <= query.distance) best.offer(entry, s, query.s - query.rear - (s + entry.front));
-        return;
+  /// Smallest gap on the corridor, even if another entry is next by reference point: searches on as far as any entry
+  /// can reach back, at most `longest` [m].
+  template <int sign, class Query>
+  static void nearest(List list, bool is_object, double longest, map::LaneCorridor const& corridor, Query const& query,
+                      std::size_t start, Nearest& best) {
+    auto const is_beyond = [&](double s) {
+      return gap_to<sign>(s, longest, query) >= best.gap || sign * (s - query.s) > query.distance;
+    };
+    auto const* piece = &corridor.pieces[query.piece];
+    auto const* const last = sign > 0 ? &corridor.pieces.back() : &corridor.pieces.front();
+    for (Walk<sign> walk{list, start};; walk = Walk<sign>::into(list, *piece)) {
+      for (; walk && walk.is_within(*piece); ++walk) {
+        double const s = walk->position - piece->index_offset;
+        if (is_beyond(s)) return;
+        if (!query.skips(*walk, is_object, sign * (s - query.s)))
+          best.offer(*walk, s, gap_to<sign>(s, walk.reach_back(), query));
       }
-      if (p-- == 0 || query.s - pieces[p].end > query.distance) return;
-      i = upper(list, pieces[p].end + 1.0 + pieces[p].index_offset, none<Slot>);
+      if (piece == last) return;
+      piece += sign;
+      if (is_beyond(sign > 0 ? piece->begin - 1.0 : piece->end + 1.0)) return;
     }
   }
 
-  /// Smallest gap ahead on the corridor, even if another entry is next by reference point: searches on as far as any
-  /// entry can reach back, at most `longest` [m].
-  template <class Query>
-  static void nearest_front(List list, bool is_object, double longest, map::LaneCorridor const& corridor,
-                            Query const& query, std::size_t start, Nearest& best) {
-    auto const& pieces = corridor.pieces;
-    double const own_front = query.s + query.front;
-    for (std::size_t p = index_of(query.piece), i = start; p < pieces.size(); ++p) {
-      double const offset = pieces[p].index_offset, from = pieces[p].begin - 1.0;
-      if (p > index_of(query.piece)) {
-        if (from - longest - own_front >= best.gap || from - query.s > query.distance) return;
-        i = first_at(list, from + offset);
-      }
-      for (; i < list.size() && list[i].position <= pieces[p].end + 1.0 + offset; ++i) {
-        double const s = list[i].position - offset;
-        if (s - longest - own_front >= best.gap || s - query.s > query.distance) return;
-        if (!skips(query, list[i], is_object, s - query.s)) best.offer(list[i], s, s - list[i].rear - own_front);
-      }
-    }
-  }
-
-  /// The counterpart behind.
-  template <class Query>
-  static void nearest_rear(List list, bool is_object, double longest, map::LaneCorridor const& corridor,
-                           Query const& query, std::size_t start, Nearest& best) {
-    auto const& pieces = corridor.pieces;
-    double const own_rear = query.s - query.rear;
-    for (std::size_t p = index_of(query.piece) + 1, i = start; p-- > 0;) {  // candidates lie before i
-      double const offset = pieces[p].index_offset, to = pieces[p].end + 1.0;
-      if (p < index_of(query.piece)) {
-        if (own_rear - (to + longest) >= best.gap || query.s - to > query.distance) return;
-        i = upper(list, to + offset, none<Slot>);
-      }
-      for (; i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + offset; --i) {
-        auto const& entry = list[i - 1];
-        double const s = entry.position - offset;
-        if (own_rear - (s + longest) >= best.gap || query.s - s > query.distance) return;
-        if (!skips(query, entry, is_object, query.s - s)) best.offer(entry, s, own_rear - (s + entry.front));
-      }
-    }
-  }
-
-  /// Next road user ahead among static objects on the corridor; if `crowded_`, also among agents farther away by
-  /// reference point that may reach nearer.
-  template <class Query>
-  [[nodiscard]] Nearest front_in_crowd(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
-                                       List objects, Nearest best) const {
-    if (crowded_ && best.entry) nearest_front(agents(), false, reach_.longest_rear, corridor, query, start, best);
+  /// The nearest among static objects on the corridor; if `crowded_`, also among agents farther away by reference point
+  /// that may reach nearer.
+  template <int sign, class Query>
+  void nearest_in_crowd(std::size_t start, map::LaneCorridor const& corridor, Query const& query, List objects,
+                        Nearest& best) const {
+    if (crowded_ && best.entry) nearest<sign>(agents(), false, longest_back<sign>(), corridor, query, start, best);
     if (!objects.empty())
-      nearest_front(objects, true, longest_object, corridor, query, upper(objects, key(corridor, query), Slot{}), best);
-    return best;
+      nearest<sign>(objects, true, longest_object, corridor, query,
+                    Walk<sign>::start(objects, key(corridor, query), Slot{}), best);
   }
 
   /// Likewise, and among road users on feeders. Not inlined, because it is large and rarely needed; `query` is a copy,
   /// so that the caller's can stay in registers.
-  template <class Query>
-  CAMBIUM_NOINLINE Nearest front_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
-                                           List objects, Nearest best) const {
-    best = front_in_crowd(start, corridor, query, objects, best);
-    for (auto const& feeder : corridor.feeders) {
-      if (feeder.begin > query.s + std::min(query.distance, best.gap + query.front + reach_.longest_rear) &&
-          objects.empty())
-        break;  // no agent there is closer
-      if (feeder.begin > query.s + query.distance) break;
-      front_on_feeder(feeder, query, objects, best);
-    }
-    return best;
-  }
-
-  /// The counterpart behind.
-  template <class Query>
-  CAMBIUM_NOINLINE Nearest rear_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
+  template <int sign, class Query>
+  CAMBIUM_NOINLINE Nearest next_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
                                           List objects, Nearest best) const {
-    if (crowded_ && best.entry) nearest_rear(agents(), false, reach_.longest_front, corridor, query, start, best);
-    if (!objects.empty())
-      nearest_rear(objects, true, longest_object, corridor, query, lower(objects, key(corridor, query), Slot{}), best);
+    nearest_in_crowd<sign>(start, corridor, query, objects, best);
+    double const own = sign > 0 ? query.front : query.rear;
     for (auto const& feeder : corridor.feeders) {
-      if (feeder.begin > query.s) break;
-      if (feeder.end < query.s - std::min(query.distance, best.gap + query.rear + reach_.longest_front) &&
-          objects.empty())
-        continue;  // no agent there is closer
-      if (feeder.end < query.s - query.distance || (query.merging == Merging::ignored && feeder.is_still_to_merge()))
-        continue;
-      rear_on_feeder(agents(), false, feeder, query, best);
-      if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
+      if (sign < 0 && feeder.begin > query.s) break;
+      double const reach = objects.empty() ? std::min(query.distance, best.gap + own + longest_back<sign>())
+                                           : query.distance;  // no agent there is closer
+      if (sign > 0 && feeder.begin > query.s + reach) break;
+      if (sign > 0 || !(feeder.end < query.s - reach)) next_on_feeder<sign>(feeder, query, objects, best);
     }
     return best;
   }
 
-  /// Next road user ahead on a feeder, if the query looks there.
-  template <class Query>
-  void front_on_feeder(map::Feeder const& feeder, Query const& query, List objects, Nearest& best) const {
-    if (feeder.end < query.s || (query.merging == Merging::ignored && feeder.is_still_to_merge())) return;
-    front_on_feeder(agents(), false, feeder, query, best);
-    if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
+  /// Next road user on a feeder, if the query looks there.
+  template <int sign, class Query>
+  void next_on_feeder(map::Feeder const& feeder, Query const& query, List objects, Nearest& best) const {
+    if (sign > 0 && feeder.end < query.s) return;
+    if (query.merging == Merging::ignored && feeder.is_still_to_merge()) return;
+    next_on_feeder<sign>(agents(), false, feeder, query, best);
+    if (!objects.empty()) next_on_feeder<sign>(objects, true, feeder, query, best);
   }
 
-  template <class Query>
-  void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
-    double const longest = is_object ? longest_object : reach_.longest_rear;
-    double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
-    // Rounding of the mapping must not lose an entry: start early, then skip entries that are not ahead.
-    auto const* const last = list.data() + list.size();
-    for (auto const* e = first_entry(list, from - 1e-6); e != last && e->position <= feeder.index_end; ++e) {
-      auto const& entry = *e;
-      if (entry.position < feeder.index_begin) continue;
-      double const s = feeder.image(entry.position);
-      if (skips(query, entry, is_object, s - query.s)) continue;
+  template <int sign, class Query>
+  void next_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
+    double const longest = is_object ? longest_object : longest_back<sign>();
+    bool const is_outside = sign > 0 ? query.s <= feeder.begin : query.s >= feeder.end;
+    double const from = !is_outside ? feeder.index_at(query.s) : sign > 0 ? feeder.index_begin : feeder.index_end;
+    // Rounding of the mapping must not lose an entry: start early, then skip entries on the other side.
+    for (auto walk = Walk<sign>::from(list, from - sign * 1e-6); walk; ++walk) {
+      auto const& entry = *walk;
+      if (sign > 0 ? entry.position > feeder.index_end : entry.position < feeder.index_begin) return;
+      if (sign > 0 ? entry.position < feeder.index_begin : entry.position > feeder.index_end) continue;
+      double const s = feeder.image(entry.position), way = sign * (s - query.s);
+      if (query.skips(entry, is_object, way)) continue;
       if (query.merging == Merging::by_rule && feeder.is_up_to_rule(s + entry.front)) continue;
-      bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
-      if (!ahead) continue;
-      double const own_front = query.s + query.front;
-      if (s - query.s > query.distance || map::gap_before_merge(own_front, s - longest, feeder.free_until) >= best.gap)
-        return;
-      best.offer(entry, s, map::gap_before_merge(own_front, s - entry.rear, feeder.free_until));
-    }
-  }
-
-  template <class Query>
-  void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
-    double const longest = is_object ? longest_object : reach_.longest_front;
-    double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
-    for (auto i = upper(list, to + 1e-6, none<Slot>); i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
-      auto const& entry = list[i - 1];
-      if (entry.position > feeder.index_end) continue;
-      double const s = feeder.image(entry.position);
-      if (skips(query, entry, is_object, query.s - s)) continue;
-      if (query.merging == Merging::by_rule && feeder.is_up_to_rule(s + entry.front)) continue;
-      bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
-      if (!behind) continue;
-      double const own_rear = query.s - query.rear;
-      if (query.s - s > query.distance || map::gap_before_merge(s + longest, own_rear, feeder.free_until) >= best.gap)
-        return;
-      best.offer(entry, s, map::gap_before_merge(s + entry.front, own_rear, feeder.free_until));
+      bool const is_later = sign > 0 ? entry.slot > query.slot : entry.slot < query.slot;
+      if (!(way > 0.0 || (way == 0.0 && is_later))) continue;
+      if (way > query.distance || gap_to<sign>(s, longest, query, feeder) >= best.gap) return;
+      best.offer(entry, s, gap_to<sign>(s, walk.reach_back(), query, feeder));
     }
   }
 

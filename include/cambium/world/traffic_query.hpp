@@ -33,9 +33,9 @@ struct TrafficQuery {
   double distance = Look::horizon;  ///< largest distance between reference points [m]
 
   /// Whether the search skips an entry `way` [m] away: here, the searching agent's own entries.
-  [[nodiscard]] bool skips(TrafficEntry const& entry, double /*way*/) const { return entry.slot == slot; }
-  /// Whether the search skips a static object.
-  [[nodiscard]] bool skips_object(TrafficEntry const&, double) const { return false; }
+  [[nodiscard]] bool skips(TrafficEntry const& entry, bool is_object, double /*way*/) const {
+    return !is_object && entry.slot == slot;
+  }
 };
 
 /// A query that finds only visible road users: `sees(entry, way)` tests agents, `sees_object(slot)` static objects.
@@ -45,11 +45,9 @@ struct SightedQuery : TrafficQuery {
   SeesObject sees_object;
   double far = Look::horizon;  ///< an entry farther away ends the search, visible or not [m]
 
-  [[nodiscard]] bool skips(TrafficEntry const& entry, double way) const {
+  [[nodiscard]] bool skips(TrafficEntry const& entry, bool is_object, double way) const {
+    if (is_object) return way <= far && !sees_object(entry.slot);
     return entry.slot == slot || (way <= far && !sees(entry, way));
-  }
-  [[nodiscard]] bool skips_object(TrafficEntry const& entry, double way) const {
-    return way <= far && !sees_object(entry.slot);
   }
 };
 
