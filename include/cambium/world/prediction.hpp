@@ -6,7 +6,6 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/random.hpp"
@@ -69,18 +68,16 @@ template <class Set, class World>
     return RandomStream(roster.seed, static_cast<std::uint32_t>(observer.id), static_cast<std::uint32_t>(frame.step),
                         purpose);
   };
+  static_cast<RosterFacts&>(*assumed) = roster;
+  assumed->revision = 0;
   detail::check_if_described(prediction.ego, "prediction: ego");
   detail::check_if_described(prediction.others, "prediction: others");
   assumed->seed = prediction.seed ? *prediction.seed : stream(seed_purpose)();
-  assumed->next_agent_id = roster.next_agent_id;
-  assumed->next_object_id = roster.next_object_id;
   assumed->has_sequences = roster.has_sequences;
   IdVector<std::uint8_t, Slot> seen_objects(roster.objects.size());
   for (Slot i{}; index_of(i) < roster.objects.size(); ++i) seen_objects[i] = detail::is_object_seen(world, slot, i);
   assumed->assume_objects(roster, seen_objects);
   assumed->free_roads = roster.free_roads;
-  assumed->lights = roster.lights;
-  assumed->largest_shape = roster.largest_shape;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
   for (Slot i{}; index_of(i) < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
@@ -24,20 +23,34 @@ struct FreeRoad {
   std::shared_ptr<map::RoadCorridor const> given, numbered;
 };
 
-/// The part of a roster that does not depend on the world's models.
-struct RosterBase {
+namespace detail {
+/// Removes all elements except those at `slots` (ascending). O(elements).
+template <class T>
+void keep_at(std::vector<Slot> const& slots, IdVector<T, Slot>& list) {
+  for (std::size_t to = 0; to < slots.size(); ++to)
+    if (to != index_of(slots[to])) list[to] = std::move(list[slots[to]]);
+  list.erase(list.begin() + static_cast<std::ptrdiff_t>(slots.size()), list.end());
+}
+}  // namespace detail
+
+/// What a roster keeps about the world as a whole.
+struct RosterFacts {
   std::uint64_t seed = 0;
-  std::uint32_t revision =
-      0;  ///< counts the changes that make earlier frames invalid: agents, roads, models of behaviour
+  /// Counts the changes that make earlier frames invalid: agents, roads, models of behaviour.
+  std::uint32_t revision = 0;
   std::uint32_t next_agent_id = 0;
   std::uint32_t next_object_id = 0;
-  IdVector<Goal, Slot> goals;          ///< by slot
-  bool has_sequences = false;          ///< a goal is, or was, a `GoalSequence`
-  std::vector<map::LightPlan> lights;  ///< by `LightId`; lights beyond the end are off
-  IdVector<StaticObject, Slot> objects;
-  std::vector<TrafficEntry> object_entries;           ///< objects on lanes; `slot` indexes `objects`
-  std::vector<FreeRoad> free_roads;                   ///< free corridors that agents have entered on
+  std::vector<map::LightPlan> lights{};               ///< by `LightId`; lights beyond the end are off
   geometry::Shape largest_shape{0.0, 0.0, 0.0, 0.0};  ///< holds those of all agents that are, or were, in the world
+};
+
+/// The part of a roster that does not depend on the world's models.
+struct RosterBase : RosterFacts {
+  IdVector<Goal, Slot> goals;  ///< by slot
+  bool has_sequences = false;  ///< a goal is, or was, a `GoalSequence`
+  IdVector<StaticObject, Slot> objects;
+  std::vector<TrafficEntry> object_entries;  ///< objects on lanes; `slot` indexes `objects`
+  std::vector<FreeRoad> free_roads;          ///< free corridors that agents have entered on
 
   RosterBase();
   RosterBase(RosterBase const&);
@@ -106,21 +119,16 @@ struct Roster : RosterBase {
 
   /// Removes all agents except those at `slots` (ascending). O(n).
   void keep(std::vector<Slot> const& slots) {
-    for (std::size_t to = 0; to < slots.size(); ++to)
-      if (to != index_of(slots[to])) agents[to] = std::move(agents[slots[to]]);
-    agents.erase(agents.begin() + static_cast<std::ptrdiff_t>(slots.size()), agents.end());
+    detail::keep_at(slots, agents);
     keep_goals(slots);
   }
 
  private:
   /// The slot of `id`, or the slot at which to insert it to keep the agents sorted.
   [[nodiscard]] Slot place_of(AgentId id) const {
-    std::size_t begin = 0, end = agents.size();
-    while (begin < end) {
-      auto const middle = begin + (end - begin) / 2;
-      agents[middle].id < id ? begin = middle + 1 : end = middle;
-    }
-    return static_cast<Slot>(begin);
+    auto const at = std::lower_bound(agents.begin(), agents.end(), id,
+                                     [](Agent const& agent, AgentId other) { return agent.id < other; });
+    return static_cast<Slot>(at - agents.begin());
   }
 };
 

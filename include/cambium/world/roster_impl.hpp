@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -42,11 +41,7 @@ CAMBIUM_COLD void RosterBase::insert_goal(Slot slot, Goal goal) {
 
 CAMBIUM_COLD void RosterBase::erase_goal(Slot slot) { goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(slot)); }
 
-CAMBIUM_COLD void RosterBase::keep_goals(std::vector<Slot> const& slots) {
-  for (std::size_t to = 0; to < slots.size(); ++to)
-    if (to != index_of(slots[to])) goals[to] = std::move(goals[slots[to]]);
-  goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(slots.size()), goals.end());
-}
+CAMBIUM_COLD void RosterBase::keep_goals(std::vector<Slot> const& slots) { detail::keep_at(slots, goals); }
 
 CAMBIUM_COLD void RosterBase::assume_goal(RosterBase const* other, Slot slot) {
   goals.push_back(other != nullptr ? other->goals[slot] : Goal{});

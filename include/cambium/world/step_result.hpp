@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 
 #include "cambium/core/ids.hpp"
 
@@ -29,21 +31,14 @@ struct [[nodiscard("a step that is not valid may not have moved the world: check
 
 /// The problem as a clause for messages.
 [[nodiscard]] constexpr char const* to_string(StepProblem problem) {
-  switch (problem) {
-    case StepProblem::none:
-      return "no problem";
-    case StepProblem::bad_duration:
-      return "the step length is not above 0 and up to an hour";
-    case StepProblem::no_plan:
-      return "the behaviour found no plan";
-    case StepProblem::no_execution:
-      return "the plan does not reach the end of the step";
-    case StepProblem::not_finite:
-      return "the next state is not a finite number";
-    case StepProblem::bad_speed:
-      return "the next speed is not from 0 to 1000 m/s";
-  }
-  return "unknown problem";
+  constexpr char const* clauses[] = {"no problem",
+                                     "the step length is not above 0 and up to an hour",
+                                     "the behaviour found no plan",
+                                     "the plan does not reach the end of the step",
+                                     "the next state is not a finite number",
+                                     "the next speed is not from 0 to 1000 m/s"};
+  auto const number = static_cast<std::size_t>(problem);
+  return number < std::size(clauses) ? clauses[number] : "unknown problem";
 }
 
 }  // namespace cambium

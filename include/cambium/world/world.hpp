@@ -5,10 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
-#include <optional>
-#include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -17,7 +14,6 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
 #include "cambium/execution/execution_model.hpp"
 #include "cambium/map/map.hpp"
@@ -28,7 +24,7 @@
 #include "cambium/world/detail/refusals.hpp"
 #include "cambium/world/detail/scratch.hpp"
 #include "cambium/world/detail/situation.hpp"
-#include "cambium/world/detail/upcoming.hpp"
+#include "cambium/world/detail/world_step.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/observed_world.hpp"
 #include "cambium/world/prediction.hpp"
@@ -205,8 +201,7 @@ class World {
     auto const departed = size() - staying.size();
     if (departed == 0) return 0;
     revised_roster().keep(staying);
-    for (std::size_t to = 0; to < staying.size(); ++to) frame_.agents[to] = frame_.agents[staying[to]];
-    frame_.agents.erase(frame_.agents.end() - static_cast<std::ptrdiff_t>(departed), frame_.agents.end());
+    detail::keep_at(staying, frame_.agents);
     scratch_.forget();
     return departed;
   }
@@ -322,22 +317,12 @@ class World {
   /// What the agent sees now: a view, valid until the world changes. Throws as `slot_of`. Brings the traffic index up
   /// to date.
   [[nodiscard]] View observe(AgentId id) & { return observe(slot_of(id)); }
-  [[nodiscard]] View observe(Slot slot) & {
-    if (index_of(slot) >= size()) [[unlikely]]
-      detail::refuse_slot(slot);
-    refresh_traffic();
-    return View(*this, slot);
-  }
+  [[nodiscard]] View observe(Slot slot) & { return fresh_view<View>(slot); }
 
   /// What the agent would see with a perfect observer: the view by which others judge it. As `observe`, but without
   /// `predict` if the agents' observers are imperfect.
   [[nodiscard]] TrueView truth(AgentId id) & { return truth(slot_of(id)); }
-  [[nodiscard]] TrueView truth(Slot slot) & {
-    if (index_of(slot) >= size()) [[unlikely]]
-      detail::refuse_slot(slot);
-    refresh_traffic();
-    return TrueView(*this, slot);
-  }
+  [[nodiscard]] TrueView truth(Slot slot) & { return fresh_view<TrueView>(slot); }
 
   /// Reports a call on a const world or a temporary, with a remedy.
   template <class Id, bool may_change = false>
@@ -414,88 +399,12 @@ class World {
     scratch_.fresh = true;
   }
 
-  /// Inlines the whole step into one function. With other observers, whose views are large, this would take minutes to
-  /// compile.
-  CAMBIUM_FLATTEN void advance_all_inlined(double dt, double end, IdVector<Record, Slot>& next, StepResult& result) {
-    advance_all(dt, end, next, result);
-  }
-
-  void advance_all(double dt, double end, IdVector<Record, Slot>& next, StepResult& result) {
-    for (Slot slot{}; index_of(slot) < next.size(); ++slot) {
-      if (next.size() > 256 && index_of(slot) + 6 < next.size()) {
-        auto const soon = static_cast<Slot>(index_of(slot) + 6);
-        auto const* const segment = detail::road_under(*roster_, frame_, soon);
-        CAMBIUM_PREFETCH(segment);
-        CAMBIUM_PREFETCH(segment + 1);
-        if constexpr (Set::looks_beside) {
-          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, soon, true));
-          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, soon, false));
-        }
-      }
-      advance(slot, dt, end, next[slot], result);
-    }
-  }
-
-  static constexpr double rounding = 1e-6;  ///< tolerance below zero speed [m/s]
-
-  /// Plans and executes: fills the agent's next record except for its place on the road, which `place_all` finds.
-  void advance(Slot slot, double dt, double end, Record& next, StepResult& result) {
-    Record const& now = frame_.agents[slot];
-    next = now;
-    if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
-    auto const& agent = roster_->agents[slot];
-    View const view(*this, slot);
-    auto plan = Set::template plan<Observer::perfect>(agent.behavior, view, next.memory, dt, scratch_.workspaces);
-    if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
-    if constexpr (!Observer::perfect)
-      if (!plan.is_absolute) detail::carry_over(plan, view.state(), now.state);
-    auto const executed = execute(agent.execution, plan, now.state, agent.dynamics, end, next.execution,
-                                  [&] { return execution_stream(agent.id); });
-    if (!executed.valid) return fail(StepProblem::no_execution, agent.id, next, result);
-    if (!is_finite(executed.state) || !std::isfinite(plan.action.acceleration + plan.action.steering))
-      return fail(StepProblem::not_finite, agent.id, next, result);
-    if (!(executed.state.speed >= -rounding && executed.state.speed <= detail::fastest)) [[unlikely]]
-      return fail(StepProblem::bad_speed, agent.id, next, result);
-    if constexpr (past_steps_of < Observer >> 0) next.past.push(now.state, now.action.acceleration);
-    next.status = AgentStatus::driving;
-    next.state = executed.state;
-    next.action = plan.action;
-    if (now.status != AgentStatus::driving) [[unlikely]]
-      detail::forget_past(next);
-    else if (plan.action.acceleration == 0.0) [[unlikely]]  // the behaviour may not have said it
-      next.action.acceleration = (executed.state.speed - now.state.speed) / dt;
-  }
-
-  /// Finds the new places of the driving agents on their roads. A separate loop, because its short body lets the
-  /// processor overlap several agents.
-  CAMBIUM_FLATTEN void place_all(double dt, IdVector<Record, Slot>& next, StepResult& result) {
-    for (Slot slot{}; index_of(slot) < next.size(); ++slot) {
-      auto& record = next[slot];
-      if (record.status != AgentStatus::driving) continue;
-      double const mean_speed = 0.5 * (frame_.agents[slot].state.speed + record.state.speed);
-      detail::move_on_lane(*map_, *roster_->agents[slot].road, mean_speed * dt, record);
-      if (record.status != AgentStatus::driving) ++result.left;
-      if (roster_->has_sequences) pass_goals(slot, record);
-    }
-  }
-
-  [[nodiscard]] RandomStream execution_stream(AgentId id) const {
-    return {roster_->seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(frame_.step), execution_purpose};
-  }
-
-  static void stop_planning(PlanStatus status, AgentId id, Record& next, StepResult& result, double end) {
-    if (status == PlanStatus::failed) return fail(StepProblem::no_plan, id, next, result);
-    if (status == PlanStatus::expired) ++result.left;
-    next.status = status == PlanStatus::expired ? AgentStatus::expired : AgentStatus::not_started;
-    next.state.time = end;
-  }
-
-  static void fail(StepProblem problem, AgentId id, Record& next, StepResult& result) {
-    next.status = AgentStatus::failed;
-    next.action = {};
-    if (result.failed++ > 0) return;
-    result.problem = problem;
-    result.agent = id;
+  template <class AnyView>
+  [[nodiscard]] AnyView fresh_view(Slot slot) {
+    if (index_of(slot) >= size()) [[unlikely]]
+      detail::refuse_slot(slot);
+    refresh_traffic();
+    return AnyView(*this, slot);
   }
 
   std::shared_ptr<Map const> map_;
@@ -515,15 +424,10 @@ StepResult World<Set, ExecutionType, DynamicModelType, ObserverType>::step(doubl
   refresh_traffic();
   auto& next = scratch_.next;
   next.resize(frame_.agents.size());
-  double const end = frame_.time + dt;
-  if constexpr (Observer::perfect)
-    advance_all_inlined(dt, end, next, result);
-  else
-    advance_all(dt, end, next, result);
-  place_all(dt, next, result);
+  result = detail::WorldStep<World>(*this, dt, next, scratch_.workspaces).run();
   scratch_.remember(frame_);
   frame_.agents.swap(next);
-  frame_.time = end;
+  frame_.time += dt;
   ++frame_.step;
   scratch_.fresh = false;
   return result;

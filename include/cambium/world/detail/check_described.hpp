@@ -20,4 +20,13 @@ void check_if_described(Parameters const& parameters, std::string const& where) 
     parameters.with_stages([&where](auto const&... stage) { (check_if_described(stage, where), ...); });
 }
 
+/// The same of all models of an agent, or of what describes one.
+template <class Agent>
+void check_models(Agent const& agent, std::string const& where) {
+  check_if_described(agent.behavior, where);
+  check_if_described(agent.execution, where);
+  check_if_described(agent.dynamics, where);
+  check_if_described(agent.observer, where);
+}
+
 }  // namespace cambium::detail

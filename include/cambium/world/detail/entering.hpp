@@ -13,6 +13,7 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/corridor/lane_place.hpp"
+#include "cambium/map/fwd.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/routing/route.hpp"
 #include "cambium/world/detail/check_described.hpp"
@@ -58,6 +59,10 @@ void check_numbers(EnteringSpec const& spec, std::string const& where);
 /// Throws `WorldError` if a goal names a lane or stretch that the map lacks, has no parts, or nests a sequence, or if a
 /// sequence is too long. Throws `ParameterError` if a number is out of range or limits leave nothing between them.
 [[nodiscard]] Goal entering_goal(Map const& map, Goal const& goal, LaneId lane, std::string const& where);
+
+/// That of `known` which was built through the points of `way` with `options`; null if there is none.
+[[nodiscard]] FreeRoad const* find_free_road(std::span<FreeRoad const> known, std::vector<geometry::Point> const& way,
+                                             map::FreeCorridorOptions const& options);
 
 /// The free corridor through the points of `way`, which agents on equal ways share. Throws `MapError` as
 /// `map::build_free_corridor`.
@@ -116,10 +121,7 @@ template <class World>
   check_numbers(entering, where);
   typename World::Record record;
   record.state.speed = checked_speed(spec.speed, where);
-  check_if_described(spec.behavior.given(), where);
-  check_if_described(spec.execution, where);
-  check_if_described(spec.dynamics, where);
-  check_if_described(spec.observer, where);
+  check_models(spec, where);
   auto const [road, lane, place] = entrance(map, roster, entering, where);
   if (is_too_large(map, spec.behavior.given(), spec.shape, *road)) refuse_too_large(where);
   check_acceleration(spec.acceleration, where);

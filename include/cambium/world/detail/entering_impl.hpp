@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -50,9 +49,11 @@ namespace cambium::detail {
   return at;
 }
 
-/// Whether two free corridors were built through the same points with the same options.
-[[nodiscard]] inline bool is_same_way(map::RoadCorridor const& a, map::RoadCorridor const& b) {
-  return !a.way.empty() && a.way == b.way && map::free_corridor_options(a) == map::free_corridor_options(b);
+CAMBIUM_COLD FreeRoad const* find_free_road(std::span<FreeRoad const> known, std::vector<geometry::Point> const& way,
+                                            map::FreeCorridorOptions const& options) {
+  for (auto const& road : known)
+    if (road.given->way == way && map::free_corridor_options(*road.given) == options) return &road;
+  return nullptr;
 }
 
 CAMBIUM_COLD std::shared_ptr<map::RoadCorridor const> numbered_road(
@@ -60,8 +61,11 @@ CAMBIUM_COLD std::shared_ptr<map::RoadCorridor const> numbered_road(
     std::string const& where) {
   constexpr double apart = 10.0;  // [m]
   double begin = lane_coordinate_end(map);
+  if (!given->way.empty())
+    if (auto const* const same = find_free_road(known, given->way, map::free_corridor_options(*given)))
+      return same->numbered;
   for (auto const& road : known) {
-    if (road.given == given || road.numbered == given || is_same_way(*road.given, *given)) return road.numbered;
+    if (road.given == given || road.numbered == given) return road.numbered;
     auto const& way = road.numbered->corridors.front();
     begin = std::max(begin, way.pieces.front().index_offset + std::ceil(way.length() + apart));
   }
@@ -133,10 +137,8 @@ CAMBIUM_COLD Goal entering_goal(Map const& map, Goal const& goal, LaneId lane, s
 
 CAMBIUM_COLD std::shared_ptr<map::RoadCorridor const> free_road_along(Map const& map, RosterBase const& roster,
                                                                       std::vector<geometry::Point> const& way) {
-  for (auto const& known : roster.free_roads)
-    if (known.given->way == way && map::free_corridor_options(*known.given) == map::FreeCorridorOptions{})
-      return known.given;
-  return map::build_free_corridor(map, way);
+  auto const* const known = find_free_road(roster.free_roads, way, {});
+  return known != nullptr ? known->given : map::build_free_corridor(map, way);
 }
 
 CAMBIUM_COLD void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadCorridor const> const& given,

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"

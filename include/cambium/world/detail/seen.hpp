@@ -1,9 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "cambium/core/random.hpp"
 #include "cambium/geometry/angle.hpp"

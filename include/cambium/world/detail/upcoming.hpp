@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
