@@ -1,15 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <atomic>
-#include <bit>
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "cambium/core/binary.hpp"
@@ -17,6 +15,7 @@
 #include "cambium/core/hash.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/core/type_info.hpp"
 
 namespace cambium::detail {
@@ -25,55 +24,17 @@ inline constexpr std::size_t longest_list = std::size_t{1} << 24;  ///< [element
 inline constexpr int deepest_struct = 200;
 inline constexpr std::size_t most_fields = 127;
 
-/// Adds letters that say how a field is written.
-inline void add_letters(Fnv1a<std::uint32_t>& hash, TypeInfo const& type) {
-  auto const add = [&hash](char letter) { hash.add_byte(static_cast<unsigned char>(letter)); };
-  switch (type.kind) {
-    case TypeInfo::Kind::structure:
-      return add('s');
-    case TypeInfo::Kind::text:
-      return add('t');
-    case TypeInfo::Kind::one_of:
-      return add('v');
-    case TypeInfo::Kind::optional:
-      return add('o'), add_letters(hash, type.element());
-    case TypeInfo::Kind::list:
-      return add('l'), add_letters(hash, type.element());
-    default:
-      break;
-  }
-  add(type.is_real() ? 'f' : type.is_long_unsigned() ? 'w' : 'i');
-  add(type.is_long_unsigned() ? '8' : static_cast<char>('0' + type.size));  // 'w': of any size
-}
-
-/// Hash of the names and kinds of a struct's first fields, so that two that swap places are not read as each other.
-[[nodiscard]] inline std::uint16_t hash_of_fields(TypeInfo const& type, std::size_t count) {
-  constexpr std::uint32_t is_known = 1u << 16;
-  bool const is_whole = count == type.fields().size();
-  if (auto const known = type.hash_of_names->load(std::memory_order_relaxed); is_whole && known != 0)
-    return static_cast<std::uint16_t>(known);
-  Fnv1a<std::uint32_t> hash;
-  for (auto const& field : type.fields().first(count)) {
-    for (char const* letter = field.name; *letter != '\0'; ++letter) hash.add_byte(static_cast<unsigned char>(*letter));
-    add_letters(hash, field.type());
-  }
-  auto const result = static_cast<std::uint16_t>(hash.value() ^ hash.value() >> 16);
-  if (is_whole) type.hash_of_names->store(result | is_known, std::memory_order_relaxed);
-  return result;
-}
-
 /// A bit for each field of a struct.
-struct FieldBits {
-  std::array<unsigned char, (most_fields + 7) / 8> bytes{};
+using FieldBits = std::bitset<most_fields + 1>;
 
-  void set(std::size_t i) { bytes[i / 8] = static_cast<unsigned char>(bytes[i / 8] | 1u << i % 8); }
-  [[nodiscard]] bool operator[](std::size_t i) const { return (bytes[i / 8] >> i % 8 & 1u) != 0; }
-  [[nodiscard]] static FieldBits all() {
-    FieldBits bits;
-    bits.bytes.fill(0xff);
-    return bits;
-  }
-};
+/// Whether a field has the same bits in both structs.
+[[nodiscard]] inline bool are_equal(FieldInfo const& field, void const* a, void const* b) {
+  auto const *const left = field.in(a), *const right = field.in(b);
+  if (field.plain_size == 8) return std::memcmp(left, right, 8) == 0;  // one comparison, as the size is known
+  if (field.plain_size == 4) return std::memcmp(left, right, 4) == 0;
+  if (field.plain_size == 1) return std::memcmp(left, right, 1) == 0;
+  return are_equal(field.type(), left, right, Equality::of_bits);
+}
 
 /// The types that have been written or read so far. Writer and reader hold the same.
 struct KnownTypes {
@@ -85,7 +46,7 @@ struct KnownTypes {
   struct Alternative {
     TypeInfo const* one_of;
     std::size_t index;
-    std::shared_ptr<void const> last = {};  ///< the latest struct of it
+    std::shared_ptr<void> last = {};  ///< the latest struct of it
   };
   std::vector<Shape> shapes;
   std::vector<Alternative> alternatives;
@@ -106,16 +67,12 @@ class FieldWriter {
     using Kind = TypeInfo::Kind;
     if (type.kind == Kind::text) return put_text(key, *static_cast<std::string const*>(object));
     if (type.is_plain()) return write_plain(key, type, object);
-    if (sink_.has_tags()) sink_.begin(key);
-    if (type.kind == Kind::structure)
-      write_struct(type, object, type.assign != nullptr ? like : nullptr);
-    else if (type.kind == Kind::one_of)
-      write_alternative(type, object);
-    else if (type.kind == Kind::optional)
-      write_optional(type, object, like);
-    else
-      write_list(type, object, like);
-    if (sink_.has_tags()) sink_.end(key);
+    if (has_tags_) sink_.begin(key);
+    if (type.kind == Kind::structure) write_struct(type, object, type.assign != nullptr ? like : nullptr);
+    if (type.kind == Kind::one_of) write_alternative(type, object);
+    if (type.kind == Kind::optional) write_optional(type, object, like);
+    if (type.kind == Kind::list) write_list(type, object, like);
+    if (has_tags_) sink_.end(key);
   }
 
  private:
@@ -125,14 +82,9 @@ class FieldWriter {
     put_byte(key, std::min<std::uint64_t>(number, 255));
     if (number >= 255) sink_.integer("whole", number, 8, false);
   }
-  void put_count(char const* key, std::size_t count) {
-    if (count > longest_list)
-      throw ParameterError(where_, "a list has " + std::to_string(count) + " elements", "a file holds 16 million");
-    put_whole(key, count);
-  }
   /// Letter by letter, except between tags: for a whole text, Boost allocates whatever length a file claims.
   void put_text(char const* key, std::string const& text) {
-    if (sink_.has_tags()) return sink_.text(key, text);
+    if (has_tags_) return sink_.text(key, text);
     put_whole(key, text.size());
     for (char const letter : text) sink_.integer(key, static_cast<unsigned char>(letter), 1, true);
   }
@@ -145,28 +97,31 @@ class FieldWriter {
     sink_.integer(key, bits, type.size, type.is_signed);
   }
 
-  void write_shape(TypeInfo const& type, std::size_t fields) {
+  void write_shape(TypeInfo const& type) {
     if (known_.shape(type) != nullptr) return;
-    put_byte("fields", fields + (type.version > 0 ? 128 : 0));
+    auto const& fields = type.fields();
+    put_byte("fields", fields.size() + (type.version > 0 ? 128 : 0));
     if (type.version > 0) put_whole("version", type.version);
-    sink_.integer("names", hash_of_fields(type, fields), 2, false);
-    known_.shapes.push_back({&type, type.version, fields});
+    sink_.integer("names", fields.hash, 2, false);
+    known_.shapes.push_back({&type, type.version, fields.size()});
   }
 
   void write_struct(TypeInfo const& type, void const* object, void const* like) {
-    auto const fields = type.fields();
+    auto const& fields = type.fields();
     if (fields.size() > most_fields)
       throw ParameterError(where_, std::string("a struct '") + type.name + "' has more than 127 fields", "nest some");
     if (++depth_ > deepest_struct)
       throw ParameterError(where_, std::string("a struct '") + type.name + "' lies within more than 200 others",
                            "nest fewer of them");
-    write_shape(type, fields.size());
-    auto differs = FieldBits::all();
+    if (like == nullptr) write_shape(type);  // else the reader knows it from there
+    auto differs = FieldBits().set();
     if (like != nullptr) {
-      differs = {};
-      for (std::size_t i = 0; i < fields.size(); ++i)
-        if (!are_equal(fields[i].type(), fields[i].in(object), fields[i].in(like), Equality::of_bits)) differs.set(i);
-      for (std::size_t k = 0; k < (fields.size() + 7) / 8; ++k) put_byte("differs", differs.bytes[k]);
+      for (std::size_t i = 0; i < fields.size(); ++i) differs[i] = !are_equal(fields[i], object, like);
+      for (std::size_t k = 0; k < fields.size(); k += 8) {
+        std::uint64_t byte = 0;
+        for (std::size_t i = k; i < std::min(k + 8, fields.size()); ++i) byte |= std::uint64_t{differs[i]} << (i - k);
+        put_byte("differs", byte);
+      }
     }
     for (std::size_t i = 0; i < fields.size(); ++i)
       if (differs[i])
@@ -190,7 +145,7 @@ class FieldWriter {
     }
     auto const* const held = type.held(object);
     write(model.name, model, held, known[number].last.get());
-    known[number].last = std::shared_ptr<void const>(std::shared_ptr<void>(), held);  // not owned
+    known[number].last = {std::shared_ptr<void>(), const_cast<void*>(held)};  // not owned, only read
   }
 
   void write_optional(TypeInfo const& type, void const* object, void const* like) {
@@ -202,12 +157,16 @@ class FieldWriter {
   void write_list(TypeInfo const& type, void const* object, void const* like) {
     auto const elements = type.elements(object);
     auto const known = like != nullptr ? type.elements(like) : TypeInfo::Elements{};
-    put_count("length", elements.count);
+    if (elements.count > longest_list)
+      throw ParameterError(where_, "a list has " + std::to_string(elements.count) + " elements",
+                           "a file holds 16 million");
+    put_whole("length", elements.count);
     for (std::size_t i = 0; i < elements.count; ++i)
       write("item", type.element(), elements[i], i < known.count ? known[i] : i > 0 ? elements[i - 1] : nullptr);
   }
 
   FieldSink& sink_;
+  bool const has_tags_ = sink_.has_tags();
   std::string const& where_;
   KnownTypes known_;
   int depth_ = 0;
@@ -215,29 +174,12 @@ class FieldWriter {
 
 /// How much memory a copy of an object needs besides its own [bytes].
 [[nodiscard]] inline std::size_t bytes_in(TypeInfo const& type, void const* object) {
+  if (type.is_trivial) return 0;
+  if (type.kind == TypeInfo::Kind::text) return static_cast<std::string const*>(object)->size();
   std::size_t bytes = 0;
-  if (type.is_trivial) return bytes;
-  switch (type.kind) {
-    case TypeInfo::Kind::structure:
-      for (auto const& field : type.fields()) bytes += bytes_in(field.type(), field.in(object));
-      break;
-    case TypeInfo::Kind::text:
-      bytes = static_cast<std::string const*>(object)->size();
-      break;
-    case TypeInfo::Kind::one_of:
-      bytes = bytes_in(type.alternatives[type.index(object)](), type.held(object));
-      break;
-    case TypeInfo::Kind::optional:
-      if (auto const* const held = type.held(object)) bytes = bytes_in(type.element(), held);
-      break;
-    case TypeInfo::Kind::list: {
-      auto const elements = type.elements(object);
-      for (std::size_t i = 0; i < elements.count; ++i) bytes += elements.size + bytes_in(type.element(), elements[i]);
-      break;
-    }
-    default:
-      break;
-  }
+  for_each_part(type, object, [&](TypeInfo const& part, void const* place) {
+    bytes += bytes_in(part, place) + (type.kind == TypeInfo::Kind::list ? part.size : 0);
+  });
   return bytes;
 }
 
@@ -255,16 +197,12 @@ class FieldReader {
     using Kind = TypeInfo::Kind;
     if (type.kind == Kind::text) return static_cast<void>(*static_cast<std::string*>(object) = text(key));
     if (type.is_plain()) return read_plain(key, type, object, info);
-    if (source_.has_tags()) source_.begin(key);
-    if (type.kind == Kind::structure)
-      read_struct(type, object, type.assign != nullptr ? like : nullptr);
-    else if (type.kind == Kind::one_of)
-      read_alternative(type, object);
-    else if (type.kind == Kind::optional)
-      read_optional(type, object, info, like);
-    else
-      read_list(type, object, info, like);
-    if (source_.has_tags()) source_.end(key);
+    if (has_tags_) source_.begin(key);
+    if (type.kind == Kind::structure) read_struct(type, object, type.assign != nullptr ? like : nullptr);
+    if (type.kind == Kind::one_of) read_alternative(type, object);
+    if (type.kind == Kind::optional) read_optional(type, object, info, like);
+    if (type.kind == Kind::list) read_list(type, object, info, like);
+    if (has_tags_) source_.end(key);
   }
 
   void read_plain(char const* key, TypeInfo const& type, void* object, ParameterInfo const& info) {
@@ -303,7 +241,7 @@ class FieldReader {
   }
   [[nodiscard]] std::size_t count(char const* key) { return static_cast<std::size_t>(whole(key, longest_list)); }
   [[nodiscard]] std::string text(char const* key) {
-    if (source_.has_tags()) {
+    if (has_tags_) {
       auto text = source_.text(key);
       read_ += text.size();
       return text;
@@ -341,7 +279,7 @@ class FieldReader {
     if (fields > type.fields().size())
       refuse("has more fields than in this program",
              "read it with the program that wrote it, or a newer one; never remove a field from a description");
-    if (version == type.version && names != hash_of_fields(type, fields))
+    if (version == type.version && names != hash_of_fields(type.fields().first(fields)))
       refuse("was saved with other fields, or in another order",
              "append new fields; if one changes its name or meaning, increase the struct's `version`");
     if (version < type.version && type.upgrade == nullptr)
@@ -354,15 +292,15 @@ class FieldReader {
   void read_struct(TypeInfo const& type, void* object, void const* like) {
     if (++depth_ > deepest_struct) damaged();
     auto const shape = read_shape(type);
-    auto differs = FieldBits::all();
+    auto differs = FieldBits().set();
     if (like != nullptr) {
       count_copied(bytes_in(type, like));
       type.assign(object, like);
-      for (std::size_t k = 0; k < (shape.fields + 7) / 8; ++k)
-        differs.bytes[k] = static_cast<unsigned char>(byte("differs"));
+      differs.reset();
+      for (std::size_t k = 0; k < shape.fields; k += 8) differs |= FieldBits(byte("differs")) << k;
     }
     is_old_ = is_old_ || shape.version < type.version;  // from here on, `upgrade` checks
-    auto const fields = type.fields();
+    auto const& fields = type.fields();
     for (std::size_t i = 0; i < fields.size(); ++i)
       if (i >= shape.fields)
         set_default(type, fields[i], object);
@@ -387,25 +325,25 @@ class FieldReader {
     if (number > known.size()) damaged();
     if (number == known.size()) {
       auto const name = text("name");
-      std::size_t index = 0;
-      while (index < type.alternatives.size() && (name.empty() || alternative_name(type, index) != name)) ++index;
-      if (index == type.alternatives.size()) refuse_model(name, type);
-      known.push_back({&type, index});
+      known.push_back({&type, alternative_named(type, name)});
+      if (known.back().index == type.alternatives.size())
+        throw ParameterError(where_,
+                             "holds the model '" + name + "', which is not among those of this program (" +
+                                 joined(alternative_names(type), ", ") + ")",
+                             "read it with the type that was saved");
     }
     if (known[number].one_of != &type) damaged();
     auto const& model = type.alternatives[known[number].index]();
     type.select(object, known[number].index);
     auto* const held = const_cast<void*>(type.held(object));
-    auto const last = known[number].last;  // as `known` may grow
+    auto last = known[number].last;  // as `known` may grow, and hold another one
     read(model.name, model, held, {}, last.get());
-    known_.alternatives[number].last = std::shared_ptr<void const>(model.copy(held), model.destroy);
-  }
-  [[noreturn]] void refuse_model(std::string const& name, TypeInfo const& type) const {
-    std::string ours;
-    for (auto const& known : alternative_names(type)) ours += (ours.empty() ? "" : ", ") + known;
-    throw ParameterError(where_,
-                         "holds the model '" + name + "', which is not among those of this program (" + ours + ")",
-                         "read it with the type that was saved");
+    last.reset();
+    auto& latest = known_.alternatives[number].last;
+    if (latest.use_count() == 1)
+      model.assign(latest.get(), held);
+    else  // there is none, or one around this still refers to it
+      latest = {model.copy(held), model.destroy};
   }
 
   void read_optional(TypeInfo const& type, void* object, ParameterInfo const& info, void const* like) {
@@ -431,42 +369,27 @@ class FieldReader {
   /// Calls `upgrade` of the structs in an object that the file had in an older version, the innermost first, and checks
   /// what `read` has not. A pass of its own: until all is read, the next struct may refer to one as it was written.
   void upgrade(TypeInfo const& type, void* object) {
-    switch (type.kind) {
-      case TypeInfo::Kind::structure: {
-        auto const* const shape = known_.shape(type);
-        auto const fields = type.fields();
-        if (shape != nullptr)  // the others are defaults of today
-          for (auto const& field : fields.first(shape->fields)) upgrade(field.type(), field.in(object));
-        if (type.upgrade != nullptr && shape != nullptr && shape->version < type.version)
-          type.upgrade(object, shape->version);
-        for (auto const& field : fields) check_ranges(field.type(), field.in(object), field);
-        if (type.check != nullptr) type.check(object, where_);
-        return;
-      }
-      case TypeInfo::Kind::one_of:
-        return upgrade(type.alternatives[type.index(object)](), const_cast<void*>(type.held(object)));
-      case TypeInfo::Kind::optional:
-        if (auto const* const held = type.held(object)) upgrade(type.element(), const_cast<void*>(held));
-        return;
-      case TypeInfo::Kind::list:
-        return type.fill(object, type.elements(object).count, where_,
-                         [&](std::size_t, void* item, void const*) { upgrade(type.element(), item); });
-      default:
-        return;
-    }
+    if (type.kind != TypeInfo::Kind::structure)
+      return for_each_part(type, object, where_, [&](TypeInfo const& part, void* place) { upgrade(part, place); });
+    auto const* const shape = known_.shape(type);
+    auto const& fields = type.fields();
+    if (shape != nullptr)  // the others are defaults of today
+      for (auto const& field : fields.first(shape->fields)) upgrade(field.type(), field.in(object));
+    if (type.upgrade != nullptr && shape != nullptr && shape->version < type.version)
+      type.upgrade(object, shape->version);
+    for (auto const& field : fields) check_ranges(field.type(), field.in(object), field);
+    if (type.check != nullptr) type.check(object, where_);
   }
 
+  /// Checks a field that is a number, or holds some; structs in it check their own.
   void check_ranges(TypeInfo const& type, void const* object, ParameterInfo const& info) const {
     if (type.is_plain()) return check_range(type, object, info);
-    if (type.kind == TypeInfo::Kind::optional) {
-      if (auto const* const held = type.held(object)) check_ranges(type.element(), held, info);
-    } else if (type.kind == TypeInfo::Kind::list) {
-      auto const elements = type.elements(object);
-      for (std::size_t i = 0; i < elements.count; ++i) check_ranges(type.element(), elements[i], info);
-    }
+    if (type.kind != TypeInfo::Kind::optional && type.kind != TypeInfo::Kind::list) return;
+    for_each_part(type, object, [&](TypeInfo const& part, void const* place) { check_ranges(part, place, info); });
   }
 
   FieldSource& source_;
+  bool const has_tags_ = source_.has_tags();
   std::string const& where_;
   KnownTypes known_;
   int depth_ = 0;

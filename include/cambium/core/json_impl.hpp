@@ -170,23 +170,15 @@ class JsonReader {
                    JsonValue const& json) const {
     auto const* const members = json.members();
     if (members == nullptr) refuse(path, json, "an object");
-    std::size_t next = 0, found = 0;
-    for (auto const& field : type.fields())
-      for (std::size_t i = 0; i < members->size(); ++i) {
-        // Files mostly have the keys in the order of the description.
-        auto const at = (next + i) % members->size();
-        if ((*members)[at].first != field.name) continue;
-        next = at + 1;
-        ++found;
-        read({&path, field.name}, field, field.type(), field.in(object), field.in(usual), (*members)[at].second);
-        break;
-      }
-    if (found == members->size()) return;
-    std::vector<std::string> known;
-    for (auto const& field : type.fields()) known.emplace_back(field.name);
-    for (auto const& [key, value] : *members)
-      if (std::find(known.begin(), known.end(), key) == known.end())
-        throw ParameterError(where(path), "has no field \"" + key + "\"", suggestion(key, known));
+    auto const& fields = type.fields();
+    for (auto const& member : *members) {
+      auto const field =
+          std::find_if(fields.begin(), fields.end(), [&](FieldInfo const& one) { return one.name == member.first; });
+      if (field == fields.end())
+        throw ParameterError(where(path), "has no field \"" + member.first + "\"",
+                             suggestion(member.first, names_of(fields)));
+      read({&path, field->name}, *field, field->type(), field->in(object), field->in(usual), member.second);
+    }
   }
 
  private:
@@ -197,15 +189,12 @@ class JsonReader {
     if (word == nullptr && (members == nullptr || members->size() != 1))
       refuse(path, json, "a name, or an object with one: {\"name\": {...}}");
     auto const& name = word != nullptr ? *word : members->front().first;
-    std::size_t chosen = 0;
-    while (chosen < type.alternatives.size() && (name.empty() || alternative_name(type, chosen) != name)) ++chosen;
+    auto const chosen = alternative_named(type, name);
     if (chosen == type.alternatives.size()) {
       auto const known = alternative_names(type);
-      std::string all;
-      for (auto const& one : known) all += (all.empty() ? "" : ", ") + one;
       auto const near = nearest_names(name, known);
       throw ParameterError(where(path), "there is no \"" + name + "\" here",
-                           (near.empty() ? "" : suggestion(name, known) + " ") + ("There are: " + all));
+                           (near.empty() ? "" : suggestion(name, known) + " ") + "There are: " + joined(known, ", "));
     }
     auto const& model = type.alternatives[chosen]();
     auto const* const blank = type.index(usual) == chosen ? type.held(usual) : model.usual();
@@ -251,8 +240,7 @@ class JsonReader {
     else if (auto const* const negative = json.get<std::int64_t>())
       number.number = static_cast<double>(*negative);
     else if (word != nullptr && (*word == "inf" || *word == "-inf"))
-      number.number =
-          *word == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+      number.number = std::numeric_limits<double>::infinity() * (*word == "inf" ? 1.0 : -1.0);
     else
       refuse(path, json, "a number");
     return number;
@@ -271,12 +259,10 @@ class JsonReader {
 
   [[nodiscard]] PlainValue choice(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type,
                                   std::string const& word) const {
-    std::vector<std::string> names;
-    for (auto const name : split(info.choices, "|")) {
-      if (name == word) return with_bits(type, names.size());
-      names.emplace_back(name);
-    }
-    throw ParameterError(where(path), "is \"" + word + "\"", suggestion(word, names));
+    auto const names = split(info.choices, "|");
+    auto const at = static_cast<std::size_t>(std::find(names.begin(), names.end(), word) - names.begin());
+    if (at < names.size()) return with_bits(type, at);
+    throw ParameterError(where(path), "is \"" + word + "\"", suggestion(word, {names.begin(), names.end()}));
   }
 
   [[nodiscard]] PlainValue integer(ParameterPath const& path, TypeInfo const& type, JsonValue const& json) const {

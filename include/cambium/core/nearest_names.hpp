@@ -8,7 +8,17 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/text.hpp"
+
 namespace cambium::detail {
+
+/// The members `name` of a list's elements.
+template <class List>
+[[nodiscard]] std::vector<std::string> names_of(List const& list) {
+  std::vector<std::string> names;
+  for (auto const& one : list) names.emplace_back(one.name);
+  return names;
+}
 
 /// Edit distance: the number of letters to change, add or remove (Levenshtein 1966).
 [[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
@@ -43,11 +53,9 @@ namespace cambium::detail {
 
 /// A remedy for a mistyped `word`: "is it speed or speeds?", or "give one of a, b, c" if nothing is near.
 [[nodiscard]] inline std::string suggestion(std::string_view word, std::vector<std::string> const& names) {
+  if (names.empty()) return "there are none";
   auto const near = nearest_names(word, names);
-  std::string text = near.empty() ? "give one of " : "is it ";
-  auto const& listed = near.empty() ? names : near;
-  for (std::size_t i = 0; i < listed.size(); ++i) text += (i == 0 ? "" : near.empty() ? ", " : " or ") + listed[i];
-  return listed.empty() ? "there are none" : text + (near.empty() ? "" : "?");
+  return near.empty() ? "give one of " + joined(names, ", ") : "is it " + joined(near, " or ") + "?";
 }
 
 }  // namespace cambium::detail

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 #include "cambium/core/described.hpp"

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/error.hpp"
@@ -14,6 +15,40 @@
 namespace cambium {
 
 namespace detail {
+
+/// The name of an alternative of a `OneOf` in files: its own, or "name/2" for the second one of that name; empty if no
+/// file can hold it.
+[[nodiscard]] std::string alternative_name(TypeInfo const& one_of, std::size_t index);
+/// The names of all that a file can hold.
+[[nodiscard]] std::vector<std::string> alternative_names(TypeInfo const& one_of);
+/// The alternative of that name; `alternatives.size()` if a file can hold none.
+[[nodiscard]] std::size_t alternative_named(TypeInfo const& one_of, std::string const& name);
+
+/// Calls `visit(type, part)` for what an object consists of: the fields of a struct, what a OneOf or an optional holds,
+/// the elements of a list.
+template <class Visit>
+void for_each_part(TypeInfo const& type, void const* object, Visit const& visit) {
+  using Kind = TypeInfo::Kind;
+  if (type.kind == Kind::structure) {
+    for (auto const& field : type.fields()) visit(field.type(), field.in(object));
+  } else if (type.kind == Kind::one_of) {
+    visit(type.alternatives[type.index(object)](), type.held(object));
+  } else if (type.kind == Kind::optional) {
+    if (auto const* const held = type.held(object)) visit(type.element(), held);
+  } else if (type.kind == Kind::list) {
+    auto const elements = type.elements(object);
+    for (std::size_t i = 0; i < elements.count; ++i) visit(type.element(), elements[i]);
+  }
+}
+/// The same with parts that `visit` may change. `where`: for messages of a list that checks its elements.
+template <class Visit>
+void for_each_part(TypeInfo const& type, void* object, std::string const& where, Visit const& visit) {
+  if (type.kind == TypeInfo::Kind::list)
+    return type.fill(object, type.elements(object).count, where,
+                     [&](std::size_t, void* element, void const*) { visit(type.element(), element); });
+  for_each_part(type, static_cast<void const*>(object),
+                [&](TypeInfo const& part, void const* place) { visit(part, const_cast<void*>(place)); });
+}
 
 /// A key's path from the outermost struct, such as "source.ids[2]". It becomes text only on request.
 struct ParameterPath {

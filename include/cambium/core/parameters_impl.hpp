@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/hash.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/nearest_names.hpp"
@@ -75,6 +77,36 @@ CAMBIUM_COLD PlainValue PlainValue::highest(TypeInfo const& type) {
 
 namespace cambium::detail {
 
+/// Adds letters that say how a field is written.
+inline void add_letters(Fnv1a<std::uint32_t>& hash, TypeInfo const& type) {
+  using Kind = TypeInfo::Kind;
+  auto const add = [&hash](char letter) { hash.add_byte(static_cast<unsigned char>(letter)); };
+  switch (type.kind) {
+    case Kind::structure:
+      return add('s');
+    case Kind::text:
+      return add('t');
+    case Kind::one_of:
+      return add('v');
+    case Kind::optional:
+    case Kind::list:
+      add(type.kind == Kind::list ? 'l' : 'o');
+      return add_letters(hash, type.element());
+    default:
+      add(type.is_real() ? 'f' : type.is_long_unsigned() ? 'w' : 'i');
+      add(type.is_long_unsigned() ? '8' : static_cast<char>('0' + type.size));  // 'w': of any size
+  }
+}
+
+CAMBIUM_COLD std::uint16_t hash_of_fields(std::span<FieldInfo const> fields) {
+  Fnv1a<std::uint32_t> hash;
+  for (auto const& field : fields) {
+    for (char const letter : std::string_view(field.name)) hash.add_byte(static_cast<unsigned char>(letter));
+    add_letters(hash, field.type());
+  }
+  return static_cast<std::uint16_t>(hash.value() ^ hash.value() >> 16);
+}
+
 CAMBIUM_COLD std::string alternative_name(TypeInfo const& one_of, std::size_t index) {
   auto const& model = one_of.alternatives[index]();
   if (!model.is_storable()) return {};
@@ -92,6 +124,12 @@ CAMBIUM_COLD std::vector<std::string> alternative_names(TypeInfo const& one_of) 
   for (std::size_t i = 0; i < one_of.alternatives.size(); ++i)
     if (one_of.alternatives[i]().is_storable()) names.push_back(alternative_name(one_of, i));
   return names;
+}
+
+CAMBIUM_COLD std::size_t alternative_named(TypeInfo const& one_of, std::string const& name) {
+  std::size_t index = 0;
+  while (index < one_of.alternatives.size() && (name.empty() || alternative_name(one_of, index) != name)) ++index;
+  return index;
 }
 
 CAMBIUM_COLD std::string ParameterPath::text() const {
@@ -113,16 +151,6 @@ template <class Number>
 
 CAMBIUM_COLD std::string number_text(double value) { return shortest_text(value); }
 
-/// Name number `index` of "rk4|euler"; empty if there are fewer names.
-[[nodiscard]] inline std::string_view choice_name(std::string_view names, std::uint64_t index) {
-  for (; index > 0; --index) {
-    auto const end = names.find('|');
-    if (end == names.npos) return {};
-    names.remove_prefix(end + 1);
-  }
-  return names.substr(0, names.find('|'));
-}
-
 CAMBIUM_COLD std::string value_text(ParameterInfo const& info, PlainValue const& value) {
   using Kind = TypeInfo::Kind;
   switch (value.kind) {
@@ -133,8 +161,8 @@ CAMBIUM_COLD std::string value_text(ParameterInfo const& info, PlainValue const&
     case Kind::corridor:
       return to_string(static_cast<AgentId>(value.bits));
     case Kind::choice:
-      if (auto const name = choice_name(info.choices != nullptr ? info.choices : "", value.bits); !name.empty())
-        return std::string(name);
+      if (auto const names = split(info.choices != nullptr ? info.choices : "", "|"); value.bits < names.size())
+        if (auto const name = names[value.bits]; !name.empty()) return std::string(name);
       return std::to_string(value.bits);
     case Kind::signed_integer:
       return std::to_string(static_cast<std::int64_t>(value.bits));
@@ -155,11 +183,7 @@ CAMBIUM_COLD std::string with_unit(std::string number, char const* unit) {
 }
 
 CAMBIUM_COLD std::string range_text(ParameterInfo const& info) {
-  if (info.choices != nullptr) {
-    std::string names;
-    for (char const* c = info.choices; *c != '\0'; ++c) names += *c == '|' ? std::string(", ") : std::string(1, *c);
-    return names;
-  }
+  if (info.choices != nullptr) return joined(split(info.choices, "|"), ", ");
   auto const& range = info.range;
   std::string text = range.low == any_finite.low ? "(-inf"
                      : range.low == positive.low ? "(0"
@@ -209,25 +233,8 @@ CAMBIUM_COLD void visit_values(ParameterPath const& path, ParameterInfo const& i
 }
 
 CAMBIUM_COLD void edit_values(TypeInfo const& type, void* object, std::string const& where, EditValue const& edit) {
-  switch (type.kind) {
-    case TypeInfo::Kind::structure:
-      for (auto const& field : type.fields()) edit_values(field.type(), field.in(object), where, edit);
-      return;
-    case TypeInfo::Kind::one_of:
-      return edit_values(type.alternatives[type.index(object)](), const_cast<void*>(type.held(object)), where, edit);
-    case TypeInfo::Kind::optional:
-      if (auto const* const held = type.held(object)) edit_values(type.element(), const_cast<void*>(held), where, edit);
-      return;
-    case TypeInfo::Kind::list:
-      return type.fill(object, type.elements(object).count, where, [&](std::size_t, void* element, void const*) {
-        edit_values(type.element(), element, where, edit);
-      });
-    case TypeInfo::Kind::text:
-    case TypeInfo::Kind::opaque:
-      return;
-    default:
-      edit(type, object);
-  }
+  if (type.is_plain()) return edit(type, object);
+  for_each_part(type, object, where, [&](TypeInfo const& part, void* place) { edit_values(part, place, where, edit); });
 }
 
 CAMBIUM_COLD Range range_at(TypeInfo const& type, void const* object, double const* place) {
@@ -263,21 +270,31 @@ CAMBIUM_COLD void check_values(TypeInfo const& type, void const* object, char co
   visit_fields(type, object, &root, ListElements::each, reader);
 }
 
+/// Is told of all values as texts; `value` is null for texts and alternatives.
+class TextVisitor : public ValueVisitor {
+ public:
+  virtual void add(ParameterPath const& path, ParameterInfo const& info, std::string text, PlainValue const* value) = 0;
+  void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) final {
+    add(path, info, value_text(info, value), &value);
+  }
+  void text(ParameterPath const& path, ParameterInfo const& info, std::string const& text) final {
+    add(path, info, '"' + text + '"', nullptr);
+  }
+  void alternative(ParameterPath const& path, ParameterInfo const& info, char const* name) final {
+    add(path, info, name, nullptr);
+  }
+
+ protected:
+  ~TextVisitor() = default;
+};
+
 CAMBIUM_COLD std::string parameters_table(TypeInfo const& type) {
-  struct Table final : ValueVisitor {
+  struct Table final : TextVisitor {
     std::string rows = "| name | default | unit | range | meaning |\n|---|---|---|---|---|\n";
 
-    void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) override {
-      add(path, info, value_text(info, value), value.has_range() ? range_text(info) : "-");
-    }
-    void text(ParameterPath const& path, ParameterInfo const& info, std::string const& value) override {
-      add(path, info, '"' + std::string(value) + '"', "-");
-    }
-    void alternative(ParameterPath const& path, ParameterInfo const& info, char const* name) override {
-      add(path, info, name, "-");
-    }
-    void add(ParameterPath const& path, ParameterInfo const& info, std::string const& value, std::string const& range) {
-      rows += "| " + path.text() + " | " + (path.is_any_element() ? "-" : value) + " | " + info.unit + " | " + range +
+    void add(ParameterPath const& path, ParameterInfo const& info, std::string text, PlainValue const* value) override {
+      auto const range = value != nullptr && value->has_range() ? range_text(info) : "-";
+      rows += "| " + path.text() + " | " + (path.is_any_element() ? "-" : text) + " | " + info.unit + " | " + range +
               " | " + info.sentence + " |\n";
     }
   } table;
@@ -286,25 +303,15 @@ CAMBIUM_COLD std::string parameters_table(TypeInfo const& type) {
 }
 
 CAMBIUM_COLD std::string parameters_line(TypeInfo const& type, void const* object) {
-  struct Line final : ValueVisitor {
-    std::string line;
-    bool is_first = true;
+  struct Line final : TextVisitor {
+    std::vector<std::string> values;
 
-    void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) override {
-      add(path, with_unit(value_text(info, value), info.unit));
+    void add(ParameterPath const& path, ParameterInfo const& info, std::string text, PlainValue const* value) override {
+      values.push_back(path.text() + "=" + (value != nullptr ? with_unit(std::move(text), info.unit) : text));
     }
-    void text(ParameterPath const& path, ParameterInfo const&, std::string const& value) override {
-      add(path, '"' + std::string(value) + '"');
-    }
-    void alternative(ParameterPath const& path, ParameterInfo const&, char const* name) override { add(path, name); }
-    void add(ParameterPath const& path, std::string const& value) {
-      line += (is_first ? " " : ", ") + path.text() + "=" + value;
-      is_first = false;
-    }
-  } reader;
-  reader.line = std::string(type.name) + ":";
-  visit_fields(type, object, nullptr, ListElements::each, reader);
-  return std::move(reader.line);
+  } line;
+  visit_fields(type, object, nullptr, ListElements::each, line);
+  return type.name + std::string(line.values.empty() ? ":" : ": ") + joined(line.values, ", ");
 }
 
 CAMBIUM_COLD std::uint64_t parameters_hash(TypeInfo const& type, void const* object) {
@@ -390,48 +397,45 @@ CAMBIUM_COLD bool are_equal(TypeInfo const& type, void const* a, void const* b, 
 CAMBIUM_COLD void set_number(TypeInfo const& type, void* object, std::string_view key, double number,
                              std::string const& where) {
   auto const place = (where.empty() ? "" : where + ": ") + std::string(key);
-  auto const parts = split(key, ".");
+  auto const refuse = [&](std::string const& remedy) {
+    throw ParameterError(place, "there is no number of that key", remedy);
+  };
   auto const* here = &type;
   ParameterInfo const* info = nullptr;
-  std::vector<std::string> beside;
-  std::size_t found = 0;  // parts of the key
-  auto const held = [&] { return object = const_cast<void*>(here->held(object)); };
-  auto const refuse = [&] {
-    throw ParameterError(place, "there is no number of that key",
-                         found < parts.size() ? suggestion(parts[found], beside) : "name a number in it");
+  auto const enter = [&](TypeInfo const& part, void const* at) {
+    here = &part;
+    object = const_cast<void*>(at);
   };
-  while (true) {
-    if (here->kind == TypeInfo::Kind::optional) {
-      if (held() == nullptr) refuse();
-      here = &here->element();
-    } else if (found == parts.size()) {
-      break;
-    } else if (here->kind == TypeInfo::Kind::one_of) {
-      auto const name = alternative_name(*here, here->index(object));
-      beside = {name};
-      if (name != parts[found]) refuse();
-      ++found;
-      auto const& model = here->alternatives[here->index(object)]();
-      held();
-      here = &model;
+  auto const enter_optional = [&] {
+    if (here->kind != TypeInfo::Kind::optional) return;
+    auto const* const held = here->held(object);
+    if (held == nullptr) refuse("it is in an optional that holds nothing");
+    enter(here->element(), held);
+  };
+  for (auto const name : split(key, ".")) {
+    enter_optional();
+    std::vector<std::string> names;
+    if (here->kind == TypeInfo::Kind::one_of) {
+      auto const index = here->index(object);
+      names.push_back(alternative_name(*here, index));
+      if (name == names[0]) {
+        enter(here->alternatives[index](), here->held(object));
+        continue;
+      }
     } else if (here->kind == TypeInfo::Kind::structure) {
-      auto const fields = here->fields();
-      auto const field =
-          std::find_if(fields.begin(), fields.end(), [&](auto const& f) { return f.name == parts[found]; });
-      beside.clear();
-      if (field == fields.end())
-        for (auto const& one : fields) beside.emplace_back(one.name);
-      if (field == fields.end()) refuse();
-      ++found;
-      info = &*field;
-      object = field->in(object);
-      here = &field->type();
-    } else {
-      beside.clear();
-      refuse();
+      auto const& fields = here->fields();
+      auto const field = std::find_if(fields.begin(), fields.end(), [&](auto const& f) { return f.name == name; });
+      if (field != fields.end()) {
+        info = &*field;
+        enter(field->type(), field->in(object));
+        continue;
+      }
+      names = names_of(fields);
     }
+    refuse(suggestion(name, names));
   }
-  if (!here->is_plain()) refuse();
+  enter_optional();
+  if (!here->is_plain()) refuse("name a number in it");
   if (!here->is_real()) throw ParameterError(place, "is no real number", "name another parameter");
   auto value = PlainValue::at(object, *here);
   value.number = number;

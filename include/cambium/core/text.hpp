@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -34,6 +35,14 @@ namespace cambium::detail {
     begin = end + 1;
   }
   return parts;
+}
+
+/// The parts, with `between` between each two.
+template <class Text>
+[[nodiscard]] std::string joined(std::vector<Text> const& parts, std::string_view between) {
+  std::string text;
+  for (auto const& part : parts) text.append(&part == parts.data() ? "" : between).append(part);
+  return text;
 }
 
 /// Whether a number outside the range of doubles is too small rather than too large. The sign of the exponent decides,

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,7 +22,17 @@
 
 namespace cambium {
 
-struct FieldInfo;
+struct TypeInfo;
+
+/// A field of a described struct.
+struct FieldInfo : ParameterInfo {
+  TypeInfo const& (*type)();
+  std::size_t offset;      ///< in the struct [bytes]
+  std::size_t plain_size;  ///< of a number, bool, enum or id [bytes]; else 0
+
+  [[nodiscard]] void* in(void* object) const { return static_cast<std::byte*>(object) + offset; }
+  [[nodiscard]] void const* in(void const* object) const { return static_cast<std::byte const*>(object) + offset; }
+};
 
 /// What a type consists of, as data. Code that reads, writes, compares, checks or prints described structs is written
 /// for this table, so it is compiled once and not once for each struct. `type_info<T>()` gives the table of a described
@@ -54,6 +64,9 @@ struct TypeInfo {
     number
   };
   using Get = TypeInfo const& (*)();
+  struct Fields : std::span<FieldInfo const> {
+    std::uint16_t hash;  ///< of their names and kinds, see `detail::hash_of_fields`
+  };
   struct Elements {
     void const* first;
     std::size_t count, size;  ///< number; of one [bytes]
@@ -75,10 +88,9 @@ struct TypeInfo {
   void (*assign)(void* to, void const* from) = nullptr;  ///< null for types that cannot be assigned
 
   // Of a structure.
-  std::span<FieldInfo const> (*fields)() = nullptr;
-  std::atomic<std::uint32_t>* hash_of_names = nullptr;     ///< of all fields, once it is known: see binary_impl.hpp
-  unsigned version = 0;                                    ///< its member `version`, else 0
-  void (*upgrade)(void* object, unsigned from) = nullptr;  ///< its member `upgrade`; may be null
+  Fields const& (*fields)() = nullptr;
+  unsigned version = 0;                                                   ///< its member `version`, else 0
+  void (*upgrade)(void* object, unsigned from) = nullptr;                 ///< its member `upgrade`; may be null
   void (*check)(void const* object, std::string const& where) = nullptr;  ///< its member `check`; may be null
   void* (*copy)(void const* object) = nullptr;                            ///< on the heap; `destroy` deletes it
   void (*destroy)(void* object) = nullptr;
@@ -109,25 +121,13 @@ struct TypeInfo {
   }
 };
 
-/// A field of a described struct.
-struct FieldInfo : ParameterInfo {
-  TypeInfo::Get type;
-  std::size_t offset;  ///< in the struct [bytes]
-
-  [[nodiscard]] void* in(void* object) const { return static_cast<std::byte*>(object) + offset; }
-  [[nodiscard]] void const* in(void const* object) const { return static_cast<std::byte const*>(object) + offset; }
-};
-
 /// The table of a type.
 template <class T>
 [[nodiscard]] TypeInfo const& type_info();
 
 namespace detail {
-/// The name of an alternative of a `OneOf` in files: its own, or "name/2" for the second one of that name; empty if no
-/// file can hold it.
-[[nodiscard]] std::string alternative_name(TypeInfo const& one_of, std::size_t index);
-/// The names of all that a file can hold.
-[[nodiscard]] std::vector<std::string> alternative_names(TypeInfo const& one_of);
+/// Hash of the names and kinds of fields, so that two that swap places are not read as each other.
+[[nodiscard]] std::uint16_t hash_of_fields(std::span<FieldInfo const> fields);
 
 template <class F>
 concept HasElements = requires(F const list) {
@@ -175,35 +175,14 @@ template <class T>
 /// Calls `f` with an integer of this size [bytes] and sign.
 template <class F>
 auto with_integer(std::size_t size, bool is_signed, F const& f) {
-  switch (2 * size + is_signed) {
-    case 2:
-      return f(std::uint8_t{});
-    case 3:
-      return f(std::int8_t{});
-    case 4:
-      return f(std::uint16_t{});
-    case 5:
-      return f(std::int16_t{});
-    case 8:
-      return f(std::uint32_t{});
-    case 9:
-      return f(std::int32_t{});
-    case 16:
-      return f(std::uint64_t{});
-    default:
-      return f(std::int64_t{});
-  }
+  auto const of = [&](auto natural) { return is_signed ? f(std::make_signed_t<decltype(natural)>()) : f(natural); };
+  return size == 1   ? of(std::uint8_t())
+         : size == 2 ? of(std::uint16_t())
+         : size == 4 ? of(std::uint32_t())
+                     : of(std::uint64_t());
 }
 
-/// Whether a list or an optional can get new values of type `T`; else a compile error.
-template <class T>
-[[nodiscard]] constexpr bool check_element() {
-  static_assert(std::is_default_constructible_v<T> && std::is_copy_assignable_v<T>,
-                "cambium::parameter: what a list or an optional holds must have a default and be assignable");
-  return true;
-}
-
-/// The table of a field, of an element of a list, or of an optional value.
+/// The table of a field.
 template <class T>
 [[nodiscard]] constexpr TypeInfo::Get type_of_field() {
   static_assert(Described<T> || std::is_same_v<T, std::string> || Variant<T> || Optional<T> || ParameterList<T> ||
@@ -211,6 +190,14 @@ template <class T>
                 "cambium::parameter: a field must be a number, a bool, an enum, an id, a text, another described "
                 "struct, a OneOf of these, an optional, or a list");
   return &type_info<T>;
+}
+
+/// The table of an element of a list, or of an optional value.
+template <class T>
+[[nodiscard]] constexpr TypeInfo::Get type_of_element() {
+  static_assert(std::is_default_constructible_v<T> && std::is_copy_assignable_v<T>,
+                "cambium::parameter: what a list or an optional holds must have a default and be assignable");
+  return type_of_field<T>();
 }
 
 template <class T>
@@ -234,7 +221,7 @@ template <Described T>
   return count;
 }
 
-/// Where a member is in its struct. It is asked of memory without an object, as `offsetof` is: not each struct has a
+/// The offset of a member in its struct, found as by `offsetof` in memory without an object: some structs have no
 /// default.
 template <class T, class Owner, class Field>
 [[nodiscard]] std::size_t offset_of(Field Owner::*member) {
@@ -244,18 +231,20 @@ template <class T, class Owner, class Field>
 }
 
 template <Described T>
-[[nodiscard]] std::span<FieldInfo const> fields_of() {
-  static auto const fields = [] {
+[[nodiscard]] TypeInfo::Fields const& fields_of() {
+  static auto const list = [] {
     std::array<FieldInfo, field_count<T>()> all;
     auto next = all.begin();
     for_each_parameter<T>([&]<class Owner, class Field>(Parameter<Owner, Field> const& parameter) {
       static_cast<ParameterInfo&>(*next) = parameter;
       next->type = type_of_field<Field>();
       next->offset = offset_of<T>(parameter.field);
+      next->plain_size = std::is_class_v<Field> ? 0 : sizeof(Field);
       ++next;
     });
     return all;
   }();
+  static TypeInfo::Fields const fields{list, hash_of_fields(list)};
   return fields;
 }
 
@@ -269,11 +258,7 @@ concept HasCheck = requires(T const& object) {
 };
 
 template <Described T>
-inline std::atomic<std::uint32_t> known_hash_of_names{0};
-
-template <Described T>
 void describe_structure(TypeInfo& info) {
-  info.hash_of_names = &known_hash_of_names<T>;
   info.fields = &fields_of<T>;
   if constexpr (requires { typename std::integral_constant<unsigned, T::version>; }) info.version = T::version;
   if constexpr (HasUpgrade<T>)
@@ -286,41 +271,38 @@ void describe_structure(TypeInfo& info) {
   }
 }
 
-template <class... Models, std::size_t... i>
-[[nodiscard]] void const* held_in(std::variant<Models...> const& value, std::index_sequence<i...>) {
-  void const* held = nullptr;
-  ((value.index() == i ? static_cast<void>(held = std::get_if<i>(&value)) : void()), ...);
-  return held;
-}
 template <class Model, std::size_t i, class Variant>
 void select_if(Variant& value, std::size_t alternative) {
   if constexpr (std::is_default_constructible_v<Model>)
     if (i == alternative) value.template emplace<i>();
 }
-template <class... Models, std::size_t... i>
-void select_in(std::variant<Models...>& value, std::size_t alternative, std::index_sequence<i...>) {
-  (select_if<Models, i>(value, alternative), ...);
-}
 
 /// `T` is a OneOf, or another variant of these models.
-template <class T, class... Models>
-void describe_one_of(TypeInfo& info, std::variant<Models...> const*) {
+template <class T, class... Models, std::size_t... i>
+void describe_one_of(TypeInfo& info, std::variant<Models...> const*, std::index_sequence<i...>) {
   using Variant = std::variant<Models...>;
   static constexpr TypeInfo::Get alternatives[] = {&type_info<Models>...};
   info.alternatives = alternatives;
   info.index = [](void const* object) { return static_cast<Variant const*>(static_cast<T const*>(object))->index(); };
   info.held = [](void const* object) {
-    return held_in(*static_cast<T const*>(object), std::index_sequence_for<Models...>{});
+    Variant const* const value = static_cast<T const*>(object);
+    void const* held = nullptr;
+    ((held = held != nullptr ? held : std::get_if<i>(value)), ...);
+    return held;
   };
   info.select = [](void* object, std::size_t alternative) {
-    select_in<Models...>(*static_cast<T*>(object), alternative, std::index_sequence_for<Models...>{});
+    Variant& value = *static_cast<T*>(object);
+    (select_if<Models, i>(value, alternative), ...);
   };
+}
+template <class T, class... Models>
+void describe_one_of(TypeInfo& info, std::variant<Models...> const* none) {
+  describe_one_of<T>(info, none, std::index_sequence_for<Models...>());
 }
 
 template <Optional T>
 void describe_optional(TypeInfo& info) {
-  static_assert(check_element<typename T::value_type>());
-  info.element = type_of_field<typename T::value_type>();
+  info.element = type_of_element<typename T::value_type>();
   info.held = [](void const* object) -> void const* {
     auto const& value = *static_cast<T const*>(object);
     return value ? &*value : nullptr;
@@ -344,6 +326,8 @@ template <ParameterList T>
 void fill_list(T& list, std::size_t length, std::string const& where, TypeInfo::Fill const& fill) {
   using Element = ElementOf<T>;
   if constexpr (GrowingList<T>) {
+    if constexpr (requires { list.reserve(length); })
+      list.reserve(std::min(length, std::size_t{256}));  // a damaged file may claim any length
     while (list.size() > length) list.pop_back();
     for (std::size_t i = 0; i < length; ++i) {
       if (i == list.size()) list.push_back(Element{});
@@ -367,8 +351,7 @@ void fill_list(T& list, std::size_t length, std::string const& where, TypeInfo::
 template <ParameterList T>
 void describe_list(TypeInfo& info) {
   using Element = ElementOf<T>;
-  static_assert(check_element<Element>());
-  info.element = type_of_field<Element>();
+  info.element = type_of_element<Element>();
   if constexpr (requires { T::static_capacity; }) {
     info.most = T::static_capacity;
   } else if constexpr (requires { std::tuple_size<T>::value; }) {
