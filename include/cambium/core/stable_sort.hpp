@@ -7,34 +7,23 @@
 
 namespace cambium::detail {
 
-/// A list of any element type, as the sort sees it: comparing and swapping by index.
-struct SortedList {
-  void const* list;
-  std::size_t size;
-  bool (*is_earlier)(void const* list, std::size_t l, std::size_t r);
-  void (*swap)(void const* list, std::size_t l, std::size_t r);
-};
+/// The elements of a list, by their numbers, in the order that a stable sort gives them; empty if they have it already.
+/// Compiled once for all element types, which saves compile time where sorting is rare.
+[[nodiscard]] std::vector<std::size_t> stable_order(
+    std::size_t size, std::function<bool(std::size_t l, std::size_t r)> const& is_earlier);
 
-/// Sorts stably; returns whether the order changed. Compiled once for all element types, which saves compile time
-/// where sorting is rare. O(n log n) comparisons, O(n) swaps, allocates n numbers.
-bool stable_sort(SortedList const& sorted);
-
-/// Sorts stably by `is_earlier(l, r)`; returns whether the order changed.
+/// Sorts stably by `is_earlier(l, r)`; returns whether the order changed. O(n log n) comparisons, O(n) moves.
 template <class Element, class Compare>
 bool stable_sort_by(std::vector<Element>& elements, Compare const& is_earlier) {
-  struct List {
-    Element* elements;
-    Compare const& is_earlier;
-  } const list{elements.data(), is_earlier};
-  auto const compare = [](void const* given, std::size_t l, std::size_t r) {
-    auto const& at = *static_cast<List const*>(given);
-    return static_cast<bool>(at.is_earlier(at.elements[l], at.elements[r]));
-  };
-  auto const exchange = [](void const* given, std::size_t l, std::size_t r) {
-    auto const& at = *static_cast<List const*>(given);
-    std::swap(at.elements[l], at.elements[r]);
-  };
-  return stable_sort({&list, elements.size(), compare, exchange});
+  auto const order = stable_order(elements.size(), [&](std::size_t l, std::size_t r) {
+    return static_cast<bool>(is_earlier(elements[l], elements[r]));
+  });
+  if (order.empty()) return false;
+  std::vector<Element> sorted;
+  sorted.reserve(order.size());
+  for (auto const i : order) sorted.push_back(std::move(elements[i]));
+  elements = std::move(sorted);
+  return true;
 }
 
 /// Sorts stably by `key(element)`, a value or a pointer to a member; returns whether the order changed.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
+#include <numeric>
 #include <vector>
 
 #include "cambium/core/macros.hpp"
@@ -10,26 +12,16 @@
 namespace cambium::detail {
 
 // std::stable_sort of libstdc++ 12 causes warnings in clang 19, hence std::sort of indices with ties broken by index.
-CAMBIUM_COLD bool stable_sort(SortedList const& sorted) {
-  auto const is_earlier = [&](std::size_t l, std::size_t r) { return sorted.is_earlier(sorted.list, l, r); };
+CAMBIUM_COLD std::vector<std::size_t> stable_order(
+    std::size_t size, std::function<bool(std::size_t l, std::size_t r)> const& is_earlier) {
   std::size_t in_order = 1;
-  while (in_order < sorted.size && !is_earlier(in_order, in_order - 1)) ++in_order;
-  if (in_order >= sorted.size) return false;
-  std::vector<std::size_t> places(sorted.size);  // places[i]: old index of the element that belongs at i
-  for (std::size_t i = 0; i < sorted.size; ++i) places[i] = i;
-  std::sort(places.begin(), places.end(),
+  while (in_order < size && !is_earlier(in_order, in_order - 1)) ++in_order;
+  if (in_order >= size) return {};
+  std::vector<std::size_t> order(size);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
             [&](std::size_t l, std::size_t r) { return is_earlier(l, r) || (!is_earlier(r, l) && l < r); });
-  for (std::size_t i = 0; i < sorted.size; ++i) {  // follow each cycle of the permutation once
-    auto at = i;
-    while (places[at] != i) {
-      auto const from = places[at];
-      sorted.swap(sorted.list, at, from);
-      places[at] = at;
-      at = from;
-    }
-    places[at] = at;
-  }
-  return true;
+  return order;
 }
 
 }  // namespace cambium::detail
