@@ -32,5 +32,6 @@ TEST_CASE("escaped text keeps UTF-8 and replaces what is none") {
         "&lt;\xC3\xA4\xE2\x82\xAC\xF0\x9F\x9A\x97&gt;");
   CHECK(detail::escape_markup("a\xC3") == "a\xEF\xBF\xBD");
   CHECK(detail::escape_markup("\x80z\x07") == "\xEF\xBF\xBDz ");
-  CHECK(detail::json_string("a\"\\\n</b>") == "\"a\\\"\\\\\\n\\u003c/b\\u003e\"");
+  CHECK(detail::escape_markup("'&\"") == "&#39;&amp;&quot;");
+  CHECK(detail::json_string("a\"\\\n\t&</b>") == "\"a\\\"\\\\\\n\\t\\u0026\\u003c/b\\u003e\"");
 }

@@ -30,28 +30,9 @@ TEST_CASE("a number is a number as a whole, in decimal digits, in every locale")
     CAPTURE(text);
     CHECK(parse_number<double>(text) == 12.5);
   }
-  for (auto const* text : {"",
-                           " ",
-                           "+",
-                           "-",
-                           "12.5 m",
-                           "12,5",
-                           "12.5x",
-                           "0x10",
-                           "0x1p4",
-                           "nan",
-                           "inf",
-                           "-infinity",
-                           "1e999",
-                           "+-1",
-                           "++1",
-                           "- 1",
-                           "1 2",
-                           "1e",
-                           "1.5.2",
-                           "1'000",
-                           "\xC2\xA0"
-                           "1"}) {
+  for (auto const* text :
+       {"",          " ",     "+",   "-",   "12.5 m", "12,5", "12.5x", "0x10",  "0x1p4", "nan",    "inf",
+        "-infinity", "1e999", "+-1", "++1", "- 1",    "1 2",  "1e",    "1.5.2", "1'000", "\u00a01"}) {
     CAPTURE(text);
     CHECK(parse_number<double>(text) == std::nullopt);
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cmath>
 #include <concepts>
@@ -234,44 +233,5 @@ template <BitStream Stream>
   }
   return last;
 }
-
-/// A random choice among up to 16 weighted alternatives. The weights are stored inline: trivially copyable, no heap.
-class Discrete {
- public:
-  static constexpr std::size_t capacity = 16;
-
-  /// Throws `ParameterError` naming `where` if there is no weight or more than `capacity`, if one is negative or not
-  /// finite, or if their sum is zero or not finite.
-  explicit Discrete(std::span<double const> weights, std::string const& where = "discrete") : size_(weights.size()) {
-    if (weights.empty() || weights.size() > capacity) {
-      throw ParameterError(where, "has " + std::to_string(weights.size()) + " weights", "give 1 to 16");
-    }
-    double total = 0.0;
-    for (std::size_t i = 0; i < size_; ++i) {
-      if (!(weights[i] >= 0.0 && std::isfinite(weights[i]))) {
-        throw ParameterError(where + "[" + std::to_string(i) + "]", "is " + detail::number_text(weights[i]),
-                             "give a finite weight of at least 0");
-      }
-      weights_[i] = weights[i];
-      total += weights[i];
-    }
-    if (!(total > 0.0 && std::isfinite(total))) {
-      throw ParameterError(where, "has weights that sum to " + detail::number_text(total),
-                           "give a positive finite sum");
-    }
-  }
-
-  [[nodiscard]] std::span<double const> weights() const { return {weights_.data(), size_}; }
-
-  /// Index of the chosen alternative.
-  template <BitStream Stream>
-  [[nodiscard]] std::size_t operator()(Stream& stream) const {
-    return discrete_index(stream, weights());
-  }
-
- private:
-  std::array<double, capacity> weights_{};
-  std::size_t size_;
-};
 
 }  // namespace cambium

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <string_view>
-#include <system_error>
+#include <utility>
 
 /// Numbers and text inside HTML, SVG and JSON.
 namespace cambium::detail {
@@ -43,20 +45,23 @@ inline std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-/// Escapes `text`: an ASCII character for which `replacement` returns a non-empty text becomes that text, other control
-/// characters become blanks, and bytes that are not UTF-8 become U+FFFD.
-template <class Replacement>
-[[nodiscard]] std::string escape(std::string_view text, Replacement const& replacement) {
+/// ASCII characters, and what to write instead.
+using Replacements = std::initializer_list<std::pair<char, std::string_view>>;
+
+/// Escapes `text`: makes `replacements`; other control characters become blanks, and bytes that are not UTF-8 become
+/// U+FFFD.
+[[nodiscard]] inline std::string escape(std::string_view text, Replacements replacements) {
   std::string out;
   out.reserve(text.size());
   while (!text.empty()) {
     std::size_t const length = utf8_length(text);
     char const c = text.front();
-    std::string_view const other = length == 1 ? replacement(c) : std::string_view();
+    auto const* const found = std::find_if(replacements.begin(), replacements.end(),
+                                           [&](auto const& one) { return length == 1 && one.first == c; });
     if (length == 0)
       out += "\xEF\xBF\xBD";
-    else if (!other.empty())
-      out += other;
+    else if (found != replacements.end())
+      out += found->second;
     else if (length == 1 && (static_cast<unsigned char>(c) < 0x20 || c == 0x7F))
       out += ' ';
     else
@@ -68,48 +73,19 @@ template <class Replacement>
 
 /// `text` escaped for HTML and XML, between tags and in quoted attributes.
 [[nodiscard]] inline std::string escape_markup(std::string_view text) {
-  return escape(text, [](char c) -> std::string_view {
-    switch (c) {
-      case '&':
-        return "&amp;";
-      case '<':
-        return "&lt;";
-      case '>':
-        return "&gt;";
-      case '"':
-        return "&quot;";
-      case '\'':
-        return "&#39;";
-      default:
-        return {};
-    }
-  });
+  return escape(text, {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}});
 }
 
 /// `text` as a quoted JSON string that is safe inside a `<script>` element: it contains no `<`, `>` or `&`.
 [[nodiscard]] inline std::string json_string(std::string_view text) {
   return '"' +
-         escape(text,
-                [](char c) -> std::string_view {
-                  switch (c) {
-                    case '"':
-                      return "\\\"";
-                    case '\\':
-                      return "\\\\";
-                    case '\n':
-                      return "\\n";
-                    case '\t':
-                      return "\\t";
-                    case '<':
-                      return "\\u003c";
-                    case '>':
-                      return "\\u003e";
-                    case '&':
-                      return "\\u0026";
-                    default:
-                      return {};
-                  }
-                }) +
+         escape(text, {{'"', "\\\""},
+                       {'\\', "\\\\"},
+                       {'\n', "\\n"},
+                       {'\t', "\\t"},
+                       {'<', "\\u003c"},
+                       {'>', "\\u003e"},
+                       {'&', "\\u0026"}}) +
          '"';
 }
 
