@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 #include <type_traits>
 
@@ -18,28 +17,9 @@
 
 namespace cambium::detail {
 
-/// The nested tags of an archive that has some, for readers of the file.
-class ArchiveTags {
- public:
-  virtual void begin(char const* key) = 0;
-  virtual void end(char const* key) = 0;
-
- protected:
-  ~ArchiveTags() = default;
-};
-
-/// Those of `archive`; null if it has none.
-template <class Archive>
-[[nodiscard]] ArchiveTags* tags_of(Archive& archive) {
-  if constexpr (std::is_polymorphic_v<Archive>)
-    return dynamic_cast<ArchiveTags*>(&archive);
-  else
-    return nullptr;
-}
-
 /// Writes fields to an archive of Boost.Serialization.
 template <class Archive>
-class ArchiveSink final : public FieldSink {
+class ArchiveSink : public FieldSink {
  public:
   explicit ArchiveSink(Archive& archive) : archive_(archive) {}
 
@@ -48,23 +28,20 @@ class ArchiveSink final : public FieldSink {
   }
   void number(char const* key, double value) override { put(key, value); }
   void number(char const* key, float value) override { put(key, value); }
-  [[nodiscard]] bool has_tags() const override { return tags_ != nullptr; }
-  void begin(char const* key) override { tags_->begin(key); }
-  void end(char const* key) override { tags_->end(key); }
-  void text(char const* key, std::string const& text) override { put(key, text); }
 
- private:
+ protected:
+  ~ArchiveSink() = default;
   template <class Value>
   void put(char const* key, Value const& value) {
     archive_ << boost::serialization::make_nvp(key, value);
   }
 
+ private:
   Archive& archive_;
-  ArchiveTags* tags_ = tags_of(archive_);
 };
 
 template <class Archive>
-class ArchiveSource final : public FieldSource {
+class ArchiveSource : public FieldSource {
  public:
   explicit ArchiveSource(Archive& archive) : archive_(archive) {}
 
@@ -76,37 +53,42 @@ class ArchiveSource final : public FieldSource {
   }
   void number(char const* key, double& value) override { get(key, value); }
   void number(char const* key, float& value) override { get(key, value); }
-  [[nodiscard]] bool has_tags() const override { return tags_ != nullptr; }
-  void begin(char const* key) override { tags_->begin(key); }
-  void end(char const* key) override { tags_->end(key); }
-  [[nodiscard]] std::string text(char const* key) override {
-    std::string text;
-    get(key, text);
-    return text;
-  }
 
- private:
+ protected:
+  ~ArchiveSource() = default;
   template <class Value>
   void get(char const* key, Value& value) {
     archive_ >> boost::serialization::make_nvp(key, value);
   }
 
+ private:
   Archive& archive_;
-  ArchiveTags* tags_ = tags_of(archive_);
 };
+
+/// Calls `f` with the archive itself if it is a `Fields` (`FieldSink` or `FieldSource`), as some archives of snapshots
+/// are; otherwise with an `Adapter` to it.
+template <class Fields, class Adapter, class Archive, class F>
+void with_fields(Archive& archive, F const& f) {
+  if constexpr (std::is_polymorphic_v<Archive>)
+    if (auto* const own = dynamic_cast<Fields*>(&archive)) return f(*own);
+  struct Usual final : Adapter {
+    using Adapter::Adapter;
+  } usual(archive);
+  f(usual);
+}
 
 /// Saves `value`, whose fields are described, or loads it. Throws `SnapshotError` as `write_fields` and `read_fields`
 /// throw `ParameterError`.
 template <class Archive, class Value>
 void archive_fields(Archive& archive, char const* key, Value& value) {
   try {
-    if constexpr (Archive::is_saving::value) {
-      ArchiveSink<Archive> sink(archive);
-      write_fields(sink, key, type_info<std::remove_const_t<Value>>(), &value, "snapshot");
-    } else {
-      ArchiveSource<Archive> source(archive);
-      read_fields(source, key, type_info<Value>(), &value, "snapshot");
-    }
+    auto const& type = type_info<std::remove_const_t<Value>>();
+    if constexpr (Archive::is_saving::value)
+      with_fields<FieldSink, ArchiveSink<Archive>>(
+          archive, [&](FieldSink& sink) { write_fields(sink, key, type, &value, "snapshot"); });
+    else
+      with_fields<FieldSource, ArchiveSource<Archive>>(
+          archive, [&](FieldSource& source) { read_fields(source, key, type, &value, "snapshot"); });
   } catch (ParameterError const& problem) {
     std::string_view what = problem.what();
     if (constexpr std::string_view place = "snapshot: "; what.starts_with(place)) what.remove_prefix(place.size());

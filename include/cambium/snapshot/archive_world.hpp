@@ -111,10 +111,7 @@ template <bool is_memory, class T, class... Around>
 /// As `check_described` for what is either one struct or a set of them.
 template <bool is_memory, class Slot>
 [[nodiscard]] constexpr bool check_slot() {
-  if constexpr (Variant<Slot>)
-    return check_field<is_memory, Slot>();
-  else
-    return check_described<is_memory, Slot>();
+  return check_field<is_memory, std::conditional_t<Variant<Slot>, Slot, std::variant<Slot>>>();
 }
 
 /// Hash of all that traffic knows of a map, and of the options it was built with. Default options add nothing, so a
@@ -185,14 +182,11 @@ struct ArchivedObject {
 
 /// All that a world consists of, but for its map.
 template <class World>
-struct ArchivedWorld {
-  std::uint64_t map_hash = 0, seed = 0;
-  std::uint32_t revision = 0, next_agent_id = 0, next_object_id = 0;
-  geometry::Shape largest_shape{};
+struct ArchivedWorld : RosterFacts {
+  std::uint64_t map_hash = 0;
   std::uint32_t free_roads = 0;
   std::vector<ArchivedRoad> roads;
   std::vector<ArchivedAgent<World>> agents;
-  std::vector<map::LightPlan> lights;
   std::vector<ArchivedObject> objects;
   typename World::FrameType frame{};
 
@@ -245,14 +239,9 @@ template <class World>
                 check_slot<false, typename World::Dynamics>() && check_slot<false, typename World::Observer>());
   auto const& roster = world.roster();
   ArchivedWorld<World> parts;
+  static_cast<RosterFacts&>(parts) = roster;
   parts.map_hash = hash_of_map(world.map());
-  parts.seed = roster.seed;
-  parts.revision = roster.revision;
-  parts.next_agent_id = roster.next_agent_id;
-  parts.next_object_id = roster.next_object_id;
-  parts.largest_shape = roster.largest_shape;
   parts.free_roads = static_cast<std::uint32_t>(roster.free_roads.size());
-  parts.lights = roster.lights;
   parts.frame = world.frame();
   std::vector<map::RoadCorridor const*> roads;
   for (auto const& road : roster.free_roads) {
@@ -352,22 +341,34 @@ requires requires(Archive& archive, void* id) { archive.template get_helper<Arch
 [[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> restored_road(Map const& map, RosterBase& roster,
                                                                             ArchivedRoad const& road,
                                                                             std::span<FreeRoad const> known) {
-  if (!road.way.empty()) {
-    map::FreeCorridorOptions const options{road.width, road.type, road.view};
-    for (auto const& [given, numbered] : known)
-      if (given->way == road.way && map::free_corridor_options(*given) == options) {
-        enter_free_road(roster, given, numbered);
-        return numbered;
-      }
-    auto const given = map::build_free_corridor(map, road.way, options);
-    auto const numbered = numbered_road(map, roster.free_roads, given, "snapshot");
-    enter_free_road(roster, given, numbered);
-    return numbered;
+  if (road.way.empty()) {
+    require_consistent(!road.route.empty(), "a road has no lanes");
+    for (auto const lane : road.route)
+      require_consistent(index_of(lane) < map.lanes().size(), "a route has a lane that the map lacks");
+    return map.queries().road_corridor(map, road.route);
   }
-  require_consistent(!road.route.empty(), "a road has no lanes");
-  for (auto const lane : road.route)
-    require_consistent(index_of(lane) < map.lanes().size(), "a route has a lane that the map lacks");
-  return map.queries().road_corridor(map, road.route);
+  map::FreeCorridorOptions const options{road.width, road.type, road.view};
+  FreeRoad free;
+  if (auto const* const same = find_free_road(known, road.way, options)) {
+    free = *same;
+  } else {
+    free.given = map::build_free_corridor(map, road.way, options);
+    free.numbered = numbered_road(map, roster.free_roads, free.given, "snapshot");
+  }
+  enter_free_road(roster, free.given, free.numbered);
+  return free.numbered;
+}
+
+/// Puts the static objects of `parts` into the roster.
+template <class World>
+void restore_objects(Map const& map, ArchivedWorld<World>& parts, RosterBase& roster) {
+  for (auto& object : parts.objects) {
+    check_outline(object.outline);
+    require_consistent(is_valid(object.id), "an object has no id");
+    require_consistent(static_cast<std::uint32_t>(object.id) >= roster.next_object_id, "its objects are not sorted");
+    roster.next_object_id = static_cast<std::uint32_t>(object.id);
+    static_cast<void>(enter_object(map, roster, std::move(object.outline)));
+  }
 }
 
 /// The world of `parts` on `map`, with the `known` free corridors. Throws `SnapshotError` if they contradict each other
@@ -375,23 +376,15 @@ requires requires(Archive& archive, void* id) { archive.template get_helper<Arch
 template <class World>
 [[nodiscard]] World restored(std::shared_ptr<Map const> const& map, ArchivedWorld<World>&& parts,
                              std::span<FreeRoad const> known = {}) {
-  using Roster = typename World::RosterType;
   require_consistent(parts.map_hash == hash_of_map(*map), "a world in it was taken on another map");
   check_parameters(parts.largest_shape, "snapshot: largest_shape");
-  auto roster = std::make_shared<Roster>();
-  roster->seed = parts.seed;
+  auto roster = std::make_shared<typename World::RosterType>();
   std::vector<std::shared_ptr<map::RoadCorridor const>> roads;
   for (auto const& road : parts.roads) {
     require_consistent((roads.size() < parts.free_roads) == !road.way.empty(), "its free corridors do not come first");
     roads.push_back(restored_road(*map, *roster, road, known));
   }
-  for (auto& object : parts.objects) {
-    check_outline(object.outline);
-    require_consistent(is_valid(object.id), "an object has no id");
-    require_consistent(static_cast<std::uint32_t>(object.id) >= roster->next_object_id, "its objects are not sorted");
-    roster->next_object_id = static_cast<std::uint32_t>(object.id);
-    static_cast<void>(enter_object(*map, *roster, std::move(object.outline)));
-  }
+  restore_objects(*map, parts, *roster);
   require_consistent(std::isfinite(parts.frame.time), "its time is not finite");
   require_consistent(parts.agents.size() == parts.frame.agents.size(), "it has more agents than places, or fewer");
   for (std::size_t i = 0; i < parts.agents.size(); ++i) {
@@ -399,29 +392,23 @@ template <class World>
     auto& record = parts.frame.agents[i];
     require_consistent(agent.road < roads.size(), "an agent has no road");
     require_consistent(i == 0 || parts.agents[i - 1].id < agent.id, "its agents are not sorted");
+    auto const& road = roads[agent.road];
     auto const where = "snapshot: agent " + to_string(agent.id);
     check_id(agent.id, false, where);
     check_parameters(agent.shape, where);
-    check_if_described(agent.behavior, where);
-    check_if_described(agent.execution, where);
-    check_if_described(agent.dynamics, where);
-    check_if_described(agent.observer, where);
-    place_on(*roads[agent.road], agent.behavior, record, parts.frame.time);
-    auto const lane = roads[agent.road]->corridors[record.lane.corridor].pieces[record.lane.piece].lane;
+    check_models(agent, where);
+    place_on(*road, agent.behavior, record, parts.frame.time);
+    auto const lane = road->corridors[record.lane.corridor].pieces[record.lane.piece].lane;
     static_cast<void>(entering_goal(*map, agent.goal, lane, "snapshot"));
-    static_cast<void>(roster->insert({agent.id, agent.shape, roads[agent.road], std::move(agent.behavior),
+    static_cast<void>(roster->insert({agent.id, agent.shape, road, std::move(agent.behavior),
                                       std::move(agent.execution), std::move(agent.dynamics), std::move(agent.observer)},
                                      std::move(agent.goal)));
   }
   require_consistent(parts.next_agent_id >= roster->next_agent_id && parts.next_object_id >= roster->next_object_id,
                      "the next id is taken");
-  roster->revision = parts.revision;
-  roster->next_agent_id = parts.next_agent_id;
-  roster->next_object_id = parts.next_object_id;
-  roster->largest_shape = parts.largest_shape;
   for (std::size_t i = 0; i < parts.lights.size(); ++i)
     require_light_plan(*map, static_cast<LightId>(i), parts.lights[i]);
-  roster->lights = std::move(parts.lights);
+  static_cast<RosterFacts&>(*roster) = std::move(parts);
   return World(map, std::move(roster), std::move(parts.frame));
 }
 
@@ -434,16 +421,16 @@ namespace boost::serialization {
 /// A world, also as a member of a class of one's own. When it is loaded, it must have the map already.
 template <class Archive, class T>
 requires(cambium::detail::is_world<T>) void serialize(Archive& archive, T& world, unsigned) {
-  using Parts = cambium::detail::ArchivedWorld<T>;
+  using namespace cambium::detail;
   if constexpr (Archive::is_saving::value) {
-    auto const parts = cambium::detail::archived(world);
-    cambium::detail::archive_fields(archive, "world", parts);
+    auto const parts = archived(world);
+    archive_fields(archive, "world", parts);
   } else {
-    Parts parts;
-    cambium::detail::archive_fields(archive, "world", parts);
-    world = cambium::detail::restored<T>(world.shared_map(), std::move(parts));
-    if constexpr (requires { cambium::detail::scenes_of(archive); })
-      cambium::detail::scenes_of(archive).scenes.push_back({world.shared_map(), world.roster().free_roads});
+    ArchivedWorld<T> parts;
+    archive_fields(archive, "world", parts);
+    world = restored<T>(world.shared_map(), std::move(parts));
+    if constexpr (requires { scenes_of(archive); })
+      scenes_of(archive).scenes.push_back({world.shared_map(), world.roster().free_roads});
   }
 }
 

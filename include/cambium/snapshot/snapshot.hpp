@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -39,22 +38,19 @@ struct SnapshotOptions {
   SnapshotFormat format = SnapshotFormat::binary;
   std::string map_file{};                 ///< where the map can be found: path of an OpenDRIVE file
   std::string map_text{};                 ///< the map itself, as OpenDRIVE; empty: not in the snapshot
-  std::string component{};                ///< whose state it is, so that a desk knows what types to read
+  std::string component{};                ///< whose state it is: tells the reader which types to restore
   std::string note{};                     ///< why it was taken
   std::optional<std::uint64_t> result{};  ///< `snapshot_hash` of what the next cycle made of these parts
 };
 
-/// What the head of a snapshot says.
-struct SnapshotInfo {
-  SnapshotFormat format{};
-  std::string library;                              ///< version of cambium
-  std::string build;                                ///< compiler, whether it fuses multiply-adds, and asserts
-  std::string platform;                             ///< sizes and order of bytes
-  std::string parts;                                ///< names, separated by commas
-  std::optional<double> time;                       ///< of the first world [s]
-  std::optional<std::uint64_t> map_hash;            ///< of its map, and of what that was built with
-  std::string map_file, map_text, component, note;  ///< as in `SnapshotOptions`; control characters as \x0a
-  std::optional<std::uint64_t> result;              ///< likewise
+/// What the head of a snapshot says. In its texts control characters are escaped (\x0a).
+struct SnapshotInfo : SnapshotOptions {
+  std::string library{};                    ///< version of cambium
+  std::string build{};                      ///< compiler, whether it fuses multiply-adds, and asserts
+  std::string platform{};                   ///< sizes and order of bytes
+  std::string parts{};                      ///< names, separated by commas
+  std::optional<double> time{};             ///< of the first world [s]
+  std::optional<std::uint64_t> map_hash{};  ///< of its map, and of what that was built with
 };
 
 namespace detail {
@@ -73,16 +69,15 @@ template <class T>
     return "component";
 }
 
-struct SavedPart {
+/// A part, and how an archive takes it or gives it back.
+template <class Archive, class Object>
+struct ArchivedPart {
   char const* name;
-  void const* object;
-  void (*save)(OutArchive& archive, char const* name, void const* object);
+  Object* object;
+  void (*archive)(Archive& archive, char const* name, Object* object);
 };
-struct LoadedPart {
-  char const* name;
-  void* object;
-  void (*load)(InArchive& archive, char const* name, void* object);
-};
+using SavedPart = ArchivedPart<OutArchive, void const>;
+using LoadedPart = ArchivedPart<InArchive, void>;
 
 template <class T>
 [[nodiscard]] SavedPart saved_part(T const& part) {

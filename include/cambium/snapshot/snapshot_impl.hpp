@@ -9,13 +9,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
-#include <istream>
-#include <limits>
 #include <locale>
-#include <new>
-#include <ostream>
-#include <stdexcept>
-#include <streambuf>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -47,33 +42,42 @@ namespace cambium::detail {
 inline constexpr std::string_view snapshot_magic = "cambium snapshot ";
 inline constexpr std::uint64_t snapshot_version = 1;
 
-/// Writes to a string.
-class StringSink final : public std::streambuf {
+/// Writes the numbers of described structs directly: the same bytes as through Boost's layers, in less time.
+class BinaryOut final : public boost::archive::polymorphic_binary_oarchive, public FieldSink {
  public:
-  explicit StringSink(std::string& text) : text_(text) {}
+  using boost::archive::polymorphic_binary_oarchive::polymorphic_binary_oarchive;
 
- protected:
-  int_type overflow(int_type c) override {
-    if (!traits_type::eq_int_type(c, traits_type::eof())) text_ += traits_type::to_char_type(c);
-    return traits_type::not_eof(c);
+  void integer(char const*, std::uint64_t bits, std::size_t size, bool) override {
+    with_integer(size, false, [&]<class Whole>(Whole) { put(static_cast<Whole>(bits)); });
   }
-  std::streamsize xsputn(char const* data, std::streamsize size) override {
-    text_.append(data, static_cast<std::size_t>(size));
-    return size;
-  }
+  void number(char const*, double value) override { put(value); }
+  void number(char const*, float value) override { put(value); }
 
  private:
-  std::string& text_;
+  template <class Number>
+  void put(Number value) {
+    boost::archive::binary_oarchive::save_binary(&value, sizeof value);
+  }
 };
 
-/// Reads from memory.
-class StringSource final : public std::streambuf {
+class BinaryIn final : public boost::archive::polymorphic_binary_iarchive, public FieldSource {
  public:
-  explicit StringSource(std::string_view text) {
-    auto* const begin = const_cast<char*>(text.data());  // a streambuf only reads what it gets from
-    setg(begin, begin, begin + text.size());
+  using boost::archive::polymorphic_binary_iarchive::polymorphic_binary_iarchive;
+
+  [[nodiscard]] std::uint64_t integer(char const*, std::size_t size, bool is_signed) override {
+    return with_integer(size, is_signed, [&](auto value) {
+      get(value);
+      return static_cast<std::uint64_t>(value);
+    });
   }
-  [[nodiscard]] std::string_view rest() const { return {gptr(), egptr()}; }
+  void number(char const*, double& value) override { get(value); }
+  void number(char const*, float& value) override { get(value); }
+
+ private:
+  template <class Number>
+  void get(Number& value) {
+    boost::archive::binary_iarchive::load_binary(&value, sizeof value);
+  }
 };
 
 /// A number for text archives, of which every bit survives; Boost's own cannot read infinities and NaN.
@@ -165,21 +169,31 @@ class NamedXmlOut : public boost::archive::xml_oarchive {
   bool is_named_ = false;
 };
 
-class XmlOut final : public boost::archive::detail::polymorphic_oarchive_route<NamedXmlOut>, public ArchiveTags {
+class XmlOut final : public boost::archive::detail::polymorphic_oarchive_route<NamedXmlOut>,
+                     public ArchiveSink<OutArchive> {
  public:
-  using Route = boost::archive::detail::polymorphic_oarchive_route<NamedXmlOut>;
-  using Route::Route;
+  XmlOut(std::ostream& stream, unsigned flags)
+      : polymorphic_oarchive_route(stream, flags), ArchiveSink(static_cast<OutArchive&>(*this)) {}
 
+  [[nodiscard]] bool has_tags() const override { return true; }
   void begin(char const* key) override { NamedXmlOut::save_start(key); }
   void end(char const* key) override { NamedXmlOut::save_end(key); }
+  void text(char const* key, std::string const& text) override { ArchiveSink::put(key, text); }
 };
 
-class XmlIn final : public boost::archive::polymorphic_xml_iarchive, public ArchiveTags {
+class XmlIn final : public boost::archive::polymorphic_xml_iarchive, public ArchiveSource<InArchive> {
  public:
-  using boost::archive::polymorphic_xml_iarchive::polymorphic_xml_iarchive;
+  XmlIn(std::istream& stream, unsigned flags)
+      : polymorphic_xml_iarchive(stream, flags), ArchiveSource(static_cast<InArchive&>(*this)) {}
 
+  [[nodiscard]] bool has_tags() const override { return true; }
   void begin(char const* key) override { boost::archive::xml_iarchive::load_start(key); }
   void end(char const* key) override { boost::archive::xml_iarchive::load_end(key); }
+  [[nodiscard]] std::string text(char const* key) override {
+    std::string text;
+    ArchiveSource::get(key, text);
+    return text;
+  }
 
  private:
   template <class Number>
@@ -192,31 +206,32 @@ class XmlIn final : public boost::archive::polymorphic_xml_iarchive, public Arch
   void load(float& value) override { read(value); }
 };
 
-/// Without Boost's comparison of tags: where that of a file is longer than the name expected, it reads behind the name.
+/// Boost's check of XML tags is off: it reads past the end of the expected name if the file's tag is longer.
 inline constexpr unsigned plain_archive =
     boost::archive::no_header | boost::archive::no_codecvt | boost::archive::no_xml_tag_checking;
 
 template <class Archive>
-void save_parts(std::string& bytes, std::span<SavedPart const> parts) {
-  StringSink sink(bytes);
-  std::ostream stream(&sink);
+[[nodiscard]] std::string save_parts(std::span<SavedPart const> parts) {
+  std::ostringstream stream;
   stream.imbue(std::locale::classic());  // whatever that of the host
-  Archive archive(stream, plain_archive);
-  for (auto const& part : parts) part.save(archive, part.name, part.object);
+  {
+    Archive archive(stream, plain_archive);
+    for (auto const& part : parts) part.archive(archive, part.name, part.object);
+  }
+  return std::move(stream).str();
 }
 
 template <class Archive>
 void load_parts(std::string_view bytes, std::span<LoadedPart const> parts) {
-  StringSource source(bytes);
-  std::istream stream(&source);
+  std::istringstream stream{std::string(bytes)};
   stream.imbue(std::locale::classic());
   {
     Archive archive(stream, plain_archive);
-    for (auto const& part : parts) part.load(archive, part.name, part.object);
+    for (auto const& part : parts) part.archive(archive, part.name, part.object);
   }
-  auto const rest = source.rest();
-  if (std::is_same_v<Archive, TextIn> ? rest.find_first_not_of('\n') != rest.npos
-                                      : !std::is_same_v<Archive, XmlIn> && !rest.empty())  // XML ends by its tags
+  bytes.remove_prefix(bytes.size() - static_cast<std::size_t>(stream.rdbuf()->in_avail()));
+  if (std::is_same_v<Archive, TextIn> ? bytes.find_first_not_of('\n') != bytes.npos
+                                      : !std::is_same_v<Archive, XmlIn> && !bytes.empty())  // XML ends by its tags
     throw SnapshotError("snapshot", "holds more than was read", "restore all that was saved, by the same `serialize`");
 }
 
@@ -271,19 +286,9 @@ CAMBIUM_COLD ArchivedParts archive_parts(SnapshotFormat format, SceneOfParts con
                                          std::span<SavedPart const> parts) {
   ArchivedParts archived{format, names_of_parts(parts), std::nullopt, scene.time, {}};
   if (scene.map != nullptr) archived.map_hash = hash_of_map(*scene.map);
-  archived.archive.reserve(8192);
+  constexpr std::array save{&save_parts<BinaryOut>, &save_parts<TextOut>, &save_parts<XmlOut>};
   try {
-    switch (format) {
-      case SnapshotFormat::binary:
-        save_parts<boost::archive::polymorphic_binary_oarchive>(archived.archive, parts);
-        break;
-      case SnapshotFormat::text:
-        save_parts<TextOut>(archived.archive, parts);
-        break;
-      case SnapshotFormat::xml:
-        save_parts<XmlOut>(archived.archive, parts);
-        break;
-    }
+    archived.archive = save[static_cast<std::size_t>(format)](parts);
   } catch (boost::archive::archive_exception const& problem) {
     throw SnapshotError("snapshot", std::string("no archive can hold its parts (") + problem.what() + ")",
                         "in XML, give names that are tags: letters, digits, _");
@@ -318,12 +323,6 @@ CAMBIUM_COLD std::string with_head(ArchivedParts const& parts, SnapshotOptions c
   return bytes + body;
 }
 
-/// The head of a snapshot, and its archive.
-struct OpenedSnapshot {
-  SnapshotInfo info;
-  std::string_view archive;
-};
-
 /// Takes a line from the begin of `text`, without its end; nothing if there is none.
 [[nodiscard]] inline std::optional<std::string_view> take_line(std::string_view& text) {
   auto const end = text.find('\n');
@@ -333,8 +332,49 @@ struct OpenedSnapshot {
   return line;
 }
 
-/// Checks everything but the archive. Throws `SnapshotError` if the bytes are no snapshot, damaged, or newer.
-[[nodiscard]] inline OpenedSnapshot open_snapshot(std::string_view bytes, std::string const& where) {
+/// The texts in the head, by their keys.
+inline constexpr std::pair<std::string_view, std::string SnapshotInfo::*> head_texts[] = {
+    {"library", &SnapshotInfo::library},     {"build", &SnapshotInfo::build},
+    {"platform", &SnapshotInfo::platform},   {"parts", &SnapshotInfo::parts},
+    {"map_file", &SnapshotInfo::map_file},   {"note", &SnapshotInfo::note},
+    {"component", &SnapshotInfo::component},
+};
+
+/// Takes what is before the archive from the begin of `bytes`: the lines of the head, and the map.
+[[nodiscard]] inline SnapshotInfo take_info(std::string_view& bytes, std::string const& where) {
+  SnapshotInfo info;
+  std::size_t map_bytes = 0;
+  bool is_known = false;
+  for (auto line = take_line(bytes); line && !line->empty(); line = take_line(bytes)) {
+    auto const gap = std::min(line->find(' '), line->size());
+    auto const key = line->substr(0, gap);
+    std::string const value(line->substr(std::min(gap + 1, line->size())));
+    for (auto const& [name, text] : head_texts)
+      if (key == name) info.*text = printable(value);
+    if (key == "archive") {
+      auto const* const format = std::find(std::begin(format_names), std::end(format_names), value);
+      is_known = format != std::end(format_names);
+      info.format = static_cast<SnapshotFormat>(format - format_names);
+    } else if (key == "time") {
+      info.time = exact_number<double>(value, where);
+    } else if (key == "map") {
+      info.map_hash = number_of(value, 16);
+    } else if (key == "map_bytes") {
+      map_bytes = static_cast<std::size_t>(number_of(value, 10).value_or(0));
+    } else if (key == "result") {
+      info.result = number_of(value, 16);
+    }
+  }
+  if (!is_known) throw SnapshotError(where, "holds a kind of archive that is unknown", "read it with a newer program");
+  if (map_bytes > bytes.size()) throw SnapshotError(where, "its map is cut short", "it is damaged: take another copy");
+  info.map_text = bytes.substr(0, map_bytes);
+  bytes.remove_prefix(map_bytes);
+  return info;
+}
+
+/// Checks everything but the archive, which it leaves in `bytes`. Throws `SnapshotError` if the bytes are no snapshot,
+/// damaged, or newer.
+[[nodiscard]] inline SnapshotInfo open_snapshot(std::string_view& bytes, std::string const& where) {
   auto const damaged = [&where](std::string const& what) {
     throw SnapshotError(where, what, "it is damaged: take another copy");
   };
@@ -348,58 +388,19 @@ struct OpenedSnapshot {
     throw SnapshotError(where, "is of version " + std::to_string(*number) + " of the format, newer than this program",
                         "read it with the program that wrote it, or a newer one");
   auto const seal = take_line(bytes).value_or("");
-  auto const length = seal.substr(0, seal.find(' '));
-  auto const size = number_of(length, 10);
+  auto const size = number_of(seal.substr(0, seal.find(' ')), 10);
   if (!size) damaged("its second line names no length");
   if (*size != bytes.size())
     damaged((*size > bytes.size() ? "is cut short: " : "is too long: ") + std::to_string(bytes.size()) +
             " bytes instead of " + std::to_string(*size));
   if (*version != std::to_string(*number) || seal != std::to_string(*size) + " " + hex(checksum_of(bytes)))
     damaged("has a wrong checksum");
-  OpenedSnapshot opened;
-  auto& info = opened.info;
-  std::uint64_t map_bytes = 0;
-  bool is_known = false;
-  for (auto line = take_line(bytes); line && !line->empty(); line = take_line(bytes)) {
-    auto const gap = std::min(line->find(' '), line->size());
-    auto const key = line->substr(0, gap);
-    std::string const value(line->substr(std::min(gap + 1, line->size())));
-    if (key == "archive") {
-      for (std::size_t i = 0; i < std::size(format_names); ++i)
-        if (value == format_names[i]) {
-          info.format = static_cast<SnapshotFormat>(i);
-          is_known = true;
-        }
-    } else if (key == "time") {
-      info.time = exact_number<double>(value, where);
-    } else if (key == "map") {
-      info.map_hash = number_of(value, 16);
-    } else if (key == "map_bytes") {
-      map_bytes = number_of(value, 10).value_or(0);
-    } else if (key == "result") {
-      info.result = number_of(value, 16);
-    } else {
-      auto* const text = key == "library"     ? &info.library
-                         : key == "build"     ? &info.build
-                         : key == "platform"  ? &info.platform
-                         : key == "parts"     ? &info.parts
-                         : key == "map_file"  ? &info.map_file
-                         : key == "component" ? &info.component
-                         : key == "note"      ? &info.note
-                                              : nullptr;
-      if (text != nullptr) *text = printable(value);
-    }
-  }
-  if (!is_known) throw SnapshotError(where, "holds a kind of archive that is unknown", "read it with a newer program");
-  if (map_bytes > bytes.size()) damaged("its map is cut short");
-  info.map_text = bytes.substr(0, static_cast<std::size_t>(map_bytes));
-  opened.archive = bytes.substr(static_cast<std::size_t>(map_bytes));
-  return opened;
+  return take_info(bytes, where);
 }
 
 CAMBIUM_COLD void read_snapshot(std::string_view bytes, std::string const& where, SceneOfParts const& scene,
                                 std::span<LoadedPart const> parts) {
-  auto const [info, archive] = open_snapshot(bytes, where);
+  auto const info = open_snapshot(bytes, where);
   if (auto const expected = names_of_parts(parts); info.parts != expected)
     throw SnapshotError(where, "holds the parts '" + info.parts + "', not '" + expected + "'",
                         "restore the same parts in the same order");
@@ -412,18 +413,9 @@ CAMBIUM_COLD void read_snapshot(std::string_view bytes, std::string const& where
                             hex(hash_of_map(*scene.map)),
                         info.map_file.empty() ? "give the world the map that it was taken on"
                                               : "give the world the map of '" + info.map_file + "'");
+  constexpr std::array load{&load_parts<BinaryIn>, &load_parts<TextIn>, &load_parts<XmlIn>};
   try {
-    switch (info.format) {
-      case SnapshotFormat::binary:
-        load_parts<boost::archive::polymorphic_binary_iarchive>(archive, parts);
-        break;
-      case SnapshotFormat::text:
-        load_parts<TextIn>(archive, parts);
-        break;
-      case SnapshotFormat::xml:
-        load_parts<XmlIn>(archive, parts);
-        break;
-    }
+    load[static_cast<std::size_t>(info.format)](bytes, parts);
   } catch (Error const& problem) {
     std::string_view what = problem.what();
     if (constexpr std::string_view place = "snapshot: "; what.starts_with(place)) what.remove_prefix(place.size());
@@ -435,10 +427,7 @@ CAMBIUM_COLD void read_snapshot(std::string_view bytes, std::string const& where
 }
 
 CAMBIUM_COLD std::uint64_t hash_of_parts(std::span<SavedPart const> parts) {
-  std::string bytes;
-  bytes.reserve(8192);
-  save_parts<boost::archive::polymorphic_binary_oarchive>(bytes, parts);
-  return checksum_of(bytes);
+  return checksum_of(save_parts<BinaryOut>(parts));
 }
 
 }  // namespace cambium::detail
@@ -446,7 +435,7 @@ CAMBIUM_COLD std::uint64_t hash_of_parts(std::span<SavedPart const> parts) {
 namespace cambium {
 
 CAMBIUM_COLD SnapshotInfo snapshot_info(std::string_view bytes, std::string const& where) {
-  return detail::open_snapshot(bytes, where).info;
+  return detail::open_snapshot(bytes, where);
 }
 
 }  // namespace cambium

@@ -12,7 +12,6 @@
 #include <span>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "cambium/snapshot/snapshot.hpp"
@@ -96,16 +95,22 @@ class SnapshotRecorder {
 
   /// Numbers of snapshots written; dropped because too many waited; and failed: a part threw when it was saved, whether
   /// or not the cycle had a reason, or the disk took no more.
-  [[nodiscard]] std::size_t written() const;
-  [[nodiscard]] std::size_t dropped() const;
-  [[nodiscard]] std::size_t failed() const;
+  [[nodiscard]] std::size_t written() const { return outcome().written; }
+  [[nodiscard]] std::size_t dropped() const { return outcome().dropped; }
+  [[nodiscard]] std::size_t failed() const { return outcome().failed; }
   /// Why the last one was not written; empty if there is none.
-  [[nodiscard]] std::string problem() const;
+  [[nodiscard]] std::string problem() const { return outcome().problem; }
   /// The file that was written last; empty if there is none.
-  [[nodiscard]] std::filesystem::path last_file() const;
+  [[nodiscard]] std::filesystem::path last_file() const { return outcome().last_file; }
 
  private:
   struct State;
+  struct Outcome {
+    std::size_t written = 0, dropped = 0, failed = 0;
+    std::string problem{};
+    std::filesystem::path last_file{};
+  };
+  [[nodiscard]] Outcome outcome() const;
 
   /// Runs the cycle; after an exception the state before it is kept, and nobody is asked any more.
   template <class Cycle>

@@ -49,9 +49,8 @@ struct SnapshotRecorder::State {
   std::uint64_t bytes = 0;
 
   mutable std::mutex mutex{};  ///< of the following
-  std::string reasons{}, problem{};
-  std::filesystem::path last_file{};
-  std::size_t written = 0, dropped = 0, failed = 0;
+  std::string reasons{};
+  Outcome outcome{};
   std::deque<Waiting> waiting{};
   bool is_writing = false, is_over = false;
   std::condition_variable changed{};
@@ -112,8 +111,8 @@ struct SnapshotRecorder::State {
 
   void note_failure(std::string const& why) {
     std::lock_guard const lock(mutex);
-    ++failed;
-    problem = why;
+    ++outcome.failed;
+    outcome.problem = why;
   }
 
   void take(Waiting snapshot) {
@@ -121,7 +120,7 @@ struct SnapshotRecorder::State {
     {
       std::lock_guard const lock(mutex);
       if (waiting.size() >= options.most_waiting) {
-        ++dropped;
+        ++outcome.dropped;
         return;
       }
       waiting.push_back(std::move(snapshot));
@@ -164,8 +163,8 @@ struct SnapshotRecorder::State {
     }
     if (!why.empty()) return note_failure(why);
     std::lock_guard const lock(mutex);
-    ++written;
-    last_file = files.back().path;
+    ++outcome.written;
+    outcome.last_file = files.back().path;
   }
 
   /// The disk has no room, or its owner has used up his share.
@@ -296,25 +295,9 @@ CAMBIUM_COLD void SnapshotRecorder::flush() {
   state_->changed.wait(lock, [this] { return state_->waiting.empty() && !state_->is_writing; });
 }
 
-CAMBIUM_COLD std::size_t SnapshotRecorder::written() const {
+CAMBIUM_COLD SnapshotRecorder::Outcome SnapshotRecorder::outcome() const {
   std::lock_guard const lock(state_->mutex);
-  return state_->written;
-}
-CAMBIUM_COLD std::size_t SnapshotRecorder::dropped() const {
-  std::lock_guard const lock(state_->mutex);
-  return state_->dropped;
-}
-CAMBIUM_COLD std::size_t SnapshotRecorder::failed() const {
-  std::lock_guard const lock(state_->mutex);
-  return state_->failed;
-}
-CAMBIUM_COLD std::string SnapshotRecorder::problem() const {
-  std::lock_guard const lock(state_->mutex);
-  return state_->problem;
-}
-CAMBIUM_COLD std::filesystem::path SnapshotRecorder::last_file() const {
-  std::lock_guard const lock(state_->mutex);
-  return state_->last_file;
+  return state_->outcome;
 }
 
 }  // namespace cambium
