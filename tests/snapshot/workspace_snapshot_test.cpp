@@ -4,29 +4,24 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <variant>
-#include <vector>
 
 #include "cambium/cambium.hpp"
 #include "cambium/planner.hpp"
+#include "snapshot/fixtures.hpp"
 #include "support/maps.hpp"
-#include "support/sealed.hpp"
 
 using namespace cambium;
+using namespace fixtures;
 
 namespace {
 
-constexpr std::array formats{SnapshotFormat::binary, SnapshotFormat::text, SnapshotFormat::xml};
 constexpr AgentId ego{0};
 
 using Vehicles = DynamicSet<SingleTrack, KinematicPoint>;
@@ -148,17 +143,6 @@ std::size_t compare(Planner const& planner, Sim const& world, std::shared_ptr<Ma
 constexpr std::size_t golden_nodes = 23;
 constexpr std::uint32_t golden_visits = 23;
 
-std::string message_of(auto const& run) {
-  try {
-    run();
-  } catch (SnapshotError const& error) {
-    return error.what();
-  } catch (std::exception const& error) {
-    return std::string("another: ") + error.what();
-  }
-  return "no error";
-}
-
 }  // namespace
 
 #ifdef CAMBIUM_QUICK_TESTS  // each takes 3 s to compile: of each kind of actions one
@@ -254,20 +238,16 @@ TEST_CASE("a kept tree needs its world, and nothing changes without it") {
   auto const sentence = "a kept tree needs its world; restore the world before it";
   Stack<Usual> other{stack};
   auto const before = snapshot_hash(other.workspace);
-  CHECK(message_of([&] { from_snapshot(to_snapshot({}, stack.workspace), "f", other.workspace); }).find(sentence) !=
-        std::string::npos);
-  CHECK(message_of([&] {
-          from_snapshot(to_snapshot({}, stack.workspace, stack.world), "f", other.workspace, other.world);
-        }).find(sentence) != std::string::npos);
+  says(sentence, [&] { from_snapshot(to_snapshot({}, stack.workspace), "f", other.workspace); });
+  says(sentence,
+       [&] { from_snapshot(to_snapshot({}, stack.workspace, stack.world), "f", other.workspace, other.world); });
   Sim elsewhere(longer);
-  CHECK(message_of([&] {
-          from_snapshot(to_snapshot({}, elsewhere, stack.workspace), "f", elsewhere, other.workspace);
-        }).find(sentence) != std::string::npos);
+  says(sentence, [&] { from_snapshot(to_snapshot({}, elsewhere, stack.workspace), "f", elsewhere, other.workspace); });
   CHECK(snapshot_hash(other.workspace) == before);
-  CHECK(message_of([&] {
-          from_snapshot(to_snapshot({}, stack.world, elsewhere, stack.workspace), "f", other.world, elsewhere,
-                        other.workspace);
-        }) == "no error");
+  says("no error", [&] {
+    from_snapshot(to_snapshot({}, stack.world, elsewhere, stack.workspace), "f", other.world, elsewhere,
+                  other.workspace);
+  });
   CHECK(snapshot_hash(other.workspace) == before);
 }
 
@@ -279,65 +259,60 @@ TEST_CASE("a tree that contradicts itself, its map or its world is refused by a 
   REQUIRE(stack.workspace.keep());
   auto const good = detail::archived_trees(*stack.workspace.kept());
   detail::ArchivedScenes const scenes{{{map, {}}}};
-  auto const refusal = [&](auto const& damage) {
+  auto const says_after = [&](char const* sentence, auto const& damage) {
     auto parts = good;
     damage(parts);
-    return message_of([&] { static_cast<void>(detail::restored_trees(std::move(parts), scenes)); });
+    says(sentence, [&] { static_cast<void>(detail::restored_trees(std::move(parts), scenes)); });
   };
-  CHECK(refusal([](auto&) {}) == "no error");
+  says_after("no error", [](auto&) {});
   auto& nodes = good.trees[0].nodes;
   REQUIRE(nodes.size() > 10);
   auto const inner = static_cast<std::size_t>(
       std::ranges::find_if(nodes, [](auto const& node) { return !node.agents[0].arms.empty(); }, {}) - nodes.begin());
   REQUIRE(inner < nodes.size());
 
-  auto const in_nodes = [&](auto const& damage) { return refusal([&](auto& parts) { damage(parts.trees[0].nodes); }); };
-  auto const contains = [](std::string const& message, char const* part) {
-    CAPTURE(message);
-    CHECK(message.find(part) != std::string::npos);
+  auto const says_of_nodes = [&](char const* sentence, auto const& damage) {
+    says_after(sentence, [&](auto& parts) { damage(parts.trees[0].nodes); });
   };
-  contains(in_nodes([](auto& list) { list[5].parent = 5; }), "comes before its parent");
-  contains(in_nodes([](auto& list) { list[5].parent = 4'000'000'000u; }), "comes before its parent");
-  contains(in_nodes([](auto& list) { list[0].parent = 0; }), "comes before its parent");
-  contains(in_nodes([](auto& list) { list[1].agents[0].came_by = 60'000; }), "comes by no arm");
-  contains(in_nodes([](auto& list) { list[1].agents.clear(); }), "other agents that choose");
-  contains(in_nodes([](auto& list) { list[1].agents.push_back(list[1].agents[0]); }), "other agents that choose");
-  contains(in_nodes([](auto& list) { list[1].agents[0].outcome.cost = 2.0; }), "no valid outcome");
-  contains(in_nodes([](auto& list) { list[1].agents[0].outcome.reward = 1.0 / 0.0; }), "no valid outcome");
-  contains(in_nodes([&](auto& list) { list[inner].agents[0].arms[0].action = 200; }), "other actions");
-  contains(in_nodes([&](auto& list) { list[inner].agents[0].arms.pop_back(); }), "other actions");
-  contains(in_nodes([](auto& list) { list.push_back(list.back()); }), "more nodes than states");
-  contains(refusal([](auto& parts) {
-             auto& tree = parts.trees[0];
-             tree.nodes.push_back(tree.nodes.back());
-             tree.states.push_back(tree.states.back());
-           }),
-           "there twice");
-  contains(refusal([](auto& parts) { parts.trees[0].states[0].over = true; }), "after the end");
-  contains(refusal([](auto& parts) { parts.trees[0].scales.clear(); }), "other agents that choose");
+  says_of_nodes("comes before its parent", [](auto& list) { list[5].parent = 5; });
+  says_of_nodes("comes before its parent", [](auto& list) { list[5].parent = 4'000'000'000u; });
+  says_of_nodes("comes before its parent", [](auto& list) { list[0].parent = 0; });
+  says_of_nodes("comes by no arm", [](auto& list) { list[1].agents[0].came_by = 60'000; });
+  says_of_nodes("other agents that choose", [](auto& list) { list[1].agents.clear(); });
+  says_of_nodes("other agents that choose", [](auto& list) { list[1].agents.push_back(list[1].agents[0]); });
+  says_of_nodes("no valid outcome", [](auto& list) { list[1].agents[0].outcome.cost = 2.0; });
+  says_of_nodes("no valid outcome", [](auto& list) { list[1].agents[0].outcome.reward = 1.0 / 0.0; });
+  says_of_nodes("other actions", [&](auto& list) { list[inner].agents[0].arms[0].action = 200; });
+  says_of_nodes("other actions", [&](auto& list) { list[inner].agents[0].arms.pop_back(); });
+  says_of_nodes("more nodes than states", [](auto& list) { list.push_back(list.back()); });
+  says_after("there twice", [](auto& parts) {
+    auto& tree = parts.trees[0];
+    tree.nodes.push_back(tree.nodes.back());
+    tree.states.push_back(tree.states.back());
+  });
+  says_after("after the end", [](auto& parts) { parts.trees[0].states[0].over = true; });
+  says_after("other agents that choose", [](auto& parts) { parts.trees[0].scales.clear(); });
 
-  auto const in_state = [&](auto const& damage) {
-    return refusal([&](auto& parts) { damage(parts.trees[1].states[3].frame); });
+  auto const says_of_state = [&](char const* sentence, auto const& damage) {
+    says_after(sentence, [&](auto& parts) { damage(parts.trees[1].states[3].frame); });
   };
-  contains(in_state([](auto& frame) { frame.agents.pop_back(); }), "other agents than its world");
-  contains(in_state([](auto& frame) { ++frame.roster_revision; }), "other agents than its world");
-  contains(in_state([](auto& frame) { frame.agents[Slot{1}].lane.corridor = CorridorId{9}; }), "on no lane");
-  contains(in_state([](auto& frame) { frame.agents[Slot{1}].memory = MacroActions::Memory{}; }),
-           "another model's memory");
-  contains(in_state([](auto& frame) {
-             std::get<MacroActions::Memory>(frame.agents[Slot{0}].memory).change.target = CorridorId{9};
-           }),
-           "remembers a lane that its road lacks");
+  says_of_state("other agents than its world", [](auto& frame) { frame.agents.pop_back(); });
+  says_of_state("other agents than its world", [](auto& frame) { ++frame.roster_revision; });
+  says_of_state("on no lane", [](auto& frame) { frame.agents[Slot{1}].lane.corridor = CorridorId{9}; });
+  says_of_state("another model's memory", [](auto& frame) { frame.agents[Slot{1}].memory = MacroActions::Memory{}; });
+  says_of_state("remembers a lane that its road lacks", [](auto& frame) {
+    std::get<MacroActions::Memory>(frame.agents[Slot{0}].memory).change.target = CorridorId{9};
+  });
 
-  contains(refusal([](auto& parts) { parts.slots.clear(); }), "no agents that choose");
-  contains(refusal([](auto& parts) { parts.slots = {Slot{77}}; }), "another model");
-  contains(refusal([](auto& parts) { parts.slots = {Slot{1}}; }), "another model");
-  contains(refusal([](auto& parts) { parts.slots = {Slot{0}, Slot{0}}; }), "other agents that choose");
-  contains(refusal([](auto& parts) { parts.dt = std::nan(""); }), "no time step");
-  contains(refusal([](auto& parts) { parts.trees.clear(); }), "has no trees");
-  contains(refusal([](auto& parts) { parts.trees.resize(1025); }), "has no trees");
-  contains(refusal([](auto& parts) { parts.world.map_hash += 1; }), "a kept tree needs its world");
-  contains(refusal([](auto& parts) { parts.parameters_of_search.horizon = 0; }), "horizon");
+  says_after("no agents that choose", [](auto& parts) { parts.slots.clear(); });
+  says_after("another model", [](auto& parts) { parts.slots = {Slot{77}}; });
+  says_after("another model", [](auto& parts) { parts.slots = {Slot{1}}; });
+  says_after("other agents that choose", [](auto& parts) { parts.slots = {Slot{0}, Slot{0}}; });
+  says_after("no time step", [](auto& parts) { parts.dt = std::nan(""); });
+  says_after("has no trees", [](auto& parts) { parts.trees.clear(); });
+  says_after("has no trees", [](auto& parts) { parts.trees.resize(1025); });
+  says_after("a kept tree needs its world", [](auto& parts) { parts.world.map_hash += 1; });
+  says_after("horizon", [](auto& parts) { parts.parameters_of_search.horizon = 0; });
 }
 
 TEST_CASE("a kept tree that was changed and sealed again is an error or a tree, never a crash") {
@@ -354,21 +329,10 @@ TEST_CASE("a kept tree that was changed and sealed again is an error or a tree, 
     auto const begin = to_snapshot({.format = format}, world, Usual::Workspace{}).size();
     RandomStream random(static_cast<std::uint64_t>(format), 2, 0);
     for (int i = 0; i < 1500; ++i) {
-      auto damaged = bytes;
-      for (auto k = 1 + random() % 3; k > 0; --k) {
-        auto const at = begin + random() % (damaged.size() - begin);
-        if (random() % 32 == 0) {
-          damaged.resize(at);
-          break;
-        }
-        if (random() % 3 == 0)
-          damaged.erase(at, 1 + (random() % 8 == 0 ? random() % 64 : 0));
-        else
-          damaged[at] = static_cast<char>(random() % 2 == 0 ? random() : static_cast<unsigned>('0') + random() % 10);
-      }
+      auto const damaged = changed_archive(bytes, begin, random);
       Sim other(map);
       Usual::Workspace workspace;
-      if (message_of([&] { from_snapshot(support::sealed_again(damaged), "f", other, workspace); }) != "no error") {
+      if (message_of([&] { from_snapshot(damaged, "f", other, workspace); }) != "no error") {
         ++refused;
         continue;
       }
@@ -398,22 +362,16 @@ TEST_CASE("a kept tree takes a few hundred bytes a node") {
 // As with worlds, in snapshot_test.cpp: files of each version of the format stay here for good.
 TEST_CASE("kept trees of earlier versions load") {
   using Tree = detail::ArchivedSearch<Usual::Workspace::Search>;
-  auto const folder = std::filesystem::path(CAMBIUM_SOURCE_DIR) / "tests/snapshot/golden";
   auto const map = support::straight_road(2, 600.0);
-  if (std::getenv("CAMBIUM_WRITE_GOLDEN") != nullptr) {
+  write_golden("tree_1", 2, [&] {
     Stack<Usual> stack{traffic(map, 0, 2)};
     stack.think(keeping<Usual>(60, 1));
     REQUIRE(stack.workspace.keep());
-    auto const parts = detail::archived_trees(*stack.workspace.kept());
-    save_snapshot(folder / "tree_1.binary.snapshot", {.format = SnapshotFormat::binary}, parts);
-    save_snapshot(folder / "tree_1.text.snapshot", {.format = SnapshotFormat::text}, parts);
-  }
-  int files = 0;
-  for (auto const& entry : std::filesystem::directory_iterator(folder)) {
-    if (!entry.path().filename().string().starts_with("tree_")) continue;
-    CAPTURE(entry.path());
+    return detail::archived_trees(*stack.workspace.kept());
+  });
+  int const files = for_each_golden("tree_", [&](std::string const& path) {
     Tree parts;
-    load_snapshot(entry.path().string(), parts);
+    load_snapshot(path, parts);
     REQUIRE(parts.trees.size() == 1);
     CHECK(parts.trees[0].nodes.size() == golden_nodes);
     CHECK(parts.trees[0].nodes[0].visits == golden_visits);
@@ -423,7 +381,6 @@ TEST_CASE("kept trees of earlier versions load") {
     scenes.scenes.push_back({map, {}});
     auto const trees = detail::restored_trees(std::move(parts), scenes);
     CHECK(trees.searches()[0].tree().size() == golden_nodes);
-    ++files;
-  }
+  });
   CHECK(files >= 2);
 }

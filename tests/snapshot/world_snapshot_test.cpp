@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -17,14 +16,14 @@
 #include "cambium/core/read_file.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/planner.hpp"
+#include "snapshot/fixtures.hpp"
 #include "support/maps.hpp"
 #include "support/spoil.hpp"
 
 using namespace cambium;
+using namespace fixtures;
 
 namespace {
-
-constexpr std::array formats{SnapshotFormat::binary, SnapshotFormat::text, SnapshotFormat::xml};
 
 /// The world after a way through a snapshot, on a map that was read anew.
 template <class World>

@@ -5,7 +5,6 @@
 //   builds mutate FOLDER COUNT  restores damaged snapshots, which must be refused or be worlds
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
