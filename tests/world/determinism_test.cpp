@@ -162,7 +162,6 @@ TEST_CASE("worlds stepped on many threads end like those stepped on one") {
 TEST_CASE("another seed gives another course") {
   auto const map = own_map("merging.xodr");
   auto a = busy_world(map, 5);
-  auto const parts = a.roster();
   auto other = std::make_shared<Mixed::RosterType>(a.roster());
   other->seed = 6;
   Mixed b(map, other, a.frame());

@@ -2,10 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
-#include <vector>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"

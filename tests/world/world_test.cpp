@@ -21,7 +21,9 @@ using namespace fixtures;
 
 namespace {
 
-/// The text of the error that `action` throws; empty where it throws none.
+double const not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// The text of the error that `action` throws; empty if it throws none.
 template <class Action>
 std::string error_of(Action const& action) {
   try {
@@ -32,7 +34,15 @@ std::string error_of(Action const& action) {
   return "";
 }
 
-bool says(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+/// Checks that `action` throws an error whose text contains `part`.
+template <class Action>
+void refuses(std::string const& part, Action const& action) {
+  auto const text = error_of(action);
+  CAPTURE(part);
+  CAPTURE(text);
+  CHECK(!text.empty());
+  CHECK(text.find(part) != std::string::npos);
+}
 
 }  // namespace
 
@@ -59,40 +69,34 @@ TEST_CASE("agents keep their lateral offset and follow curves") {
 TEST_CASE("an agent that cannot enter is named, and the world stays as it was") {
   Sim world(straight_road());
   auto const before = world.frame();
-  double const nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK(says(error_of([&] { world.add({.position = {10, 50}}); }), "no drivable lane within 5 m"));
-  CHECK(says(error_of([&] { world.add({}); }), "position"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .heading = nan}); }), "heading"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .speed = -1.0}); }), "speed"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .speed = nan}); }), "speed"));
-  CHECK(says(error_of([&] {
-               world.add({.position = {10, -1.75}, .behavior = cb::IdmClassic{.desired_speed = nan}});
-             }),
-             "desired_speed"));
-  CHECK(says(error_of([&] {
-               world.add({.position = {10, -1.75}, .behavior = cb::IdmClassic{.time_headway = -1}});
-             }),
-             "time_headway"));
-  CHECK(says(error_of([&] {
-               world.add({.position = {10, -1.75}, .goal = cb::ReachLane{static_cast<cb::LaneId>(99)}});
-             }),
-             "lane 99"));
-  CHECK(says(error_of([&] {
-               world.add({.position = {10, 2.0}, .route = cb::map::Route{{static_cast<cb::LaneId>(1)}}});
-             }),
-             "route"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .heading = 3.1}); }), "against the direction"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .speed = 1e300}); }), "speed"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .shape = {0, 0, 0.9, 0.9}}); }), "no length"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .shape = {1e9, 0, 0.9, 0.9}}); }), "shape.front"));
-  CHECK(says(error_of([&] {
-               world.add({.position = {10, -1.75}, .goal = cb::ReachLane{static_cast<cb::LaneId>(0), 50.0, 20.0}});
-             }),
-             "ends before it begins"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .route = cb::map::Route{}}); }), "route is empty"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .id = cb::none<cb::AgentId>}); }), "no such id"));
-  CHECK(says(error_of([&] { Sim without_map(nullptr); }), "no map"));
-  CHECK(says(error_of([&] { Sim without_time(straight_road(), {.time = nan}); }), "time"));
+  double const nan = not_a_number;
+  cb::geometry::Point const on_road{10, -1.75};
+  cb::LaneId const first{0};
+  std::pair<Sim::AgentSpec, char const*> const cases[] = {
+      {{.position = {10, 50}}, "no drivable lane within 5 m"},
+      {{}, "position"},
+      {{.position = on_road, .heading = nan}, "heading"},
+      {{.position = on_road, .heading = 3.1}, "against the direction"},
+      {{.position = on_road, .speed = -1.0}, "speed"},
+      {{.position = on_road, .speed = nan}, "speed"},
+      {{.position = on_road, .speed = 1e300}, "speed"},
+      {{.position = on_road, .acceleration = 100.1}, "its acceleration is 100.1, not a number from -100 to 100"},
+      {{.position = on_road, .acceleration = nan}, "acceleration"},
+      {{.position = on_road, .behavior = cb::IdmClassic{.desired_speed = nan}}, "desired_speed"},
+      {{.position = on_road, .behavior = cb::IdmClassic{.time_headway = -1}}, "time_headway"},
+      {{.position = on_road, .shape = {0, 0, 0.9, 0.9}}, "no length"},
+      {{.position = on_road, .shape = {3.6, 0.9, 0, 0}}, "no width"},
+      {{.position = on_road, .shape = {1e9, 0, 0.9, 0.9}}, "shape.front"},
+      {{.position = on_road, .goal = cb::ReachLane{cb::LaneId{99}}}, "lane 99"},
+      {{.position = on_road, .goal = cb::ReachLane{first, 50.0, 20.0}}, "ends before it begins"},
+      {{.position = on_road, .goal = cb::ReachLane{first, 1e4, 2e4}}, "its goal's stretch lies outside lane 0"},
+      {{.position = {10, 2.0}, .route = cb::map::Route{{cb::LaneId{1}}}}, "route"},
+      {{.position = on_road, .route = cb::map::Route{{cb::LaneId{99}}}}, "a lane that the map does not have"},
+      {{.position = on_road, .route = cb::map::Route{}}, "route is empty"},
+      {{.position = on_road, .id = cb::none<cb::AgentId>}, "no such id"}};
+  for (auto const& [spec, part] : cases) refuses(part, [&] { world.add(spec); });
+  refuses("no map", [&] { Sim without_map(nullptr); });
+  for (double const time : {nan, 1.1e9, -1.1e9}) refuses("time", [&] { Sim never(straight_road(), {.time = time}); });
   CHECK(world.frame() == before);
   CHECK(world.roster().agents.empty());
 }
@@ -103,16 +107,16 @@ TEST_CASE("a polygon as goal may be large: any lane that it touches leads there"
   auto const id = world.add({.position = {10, -1.75}, .goal = cb::ReachPolygon{field}});
   CHECK(world.lane_of(id) == world.map().find_lane("1", 10, -1));
   cb::geometry::Polygon const elsewhere({{300, -200}, {400, -200}, {400, -100}});
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .goal = cb::ReachPolygon{elsewhere}}); }), "polygon"));
+  refuses("polygon", [&] { world.add({.position = {10, -1.75}, .goal = cb::ReachPolygon{elsewhere}}); });
 }
 
 TEST_CASE("a place beyond the end of a road is no place on it") {
   auto const map = straight_road(1, 300);
   CHECK(map->find_lane("1", 300.0, -1) == map->find_lane("1", 0.0, -1));
-  CHECK(says(error_of([&] { (void)map->find_lane("1", 300.5, -1); }), "the road is 300 m long"));
-  CHECK(says(error_of([&] { (void)map->find_lane("1", -0.5, -1); }), "before the road"));
-  CHECK(says(error_of([&] { (void)map->find_lane("1", 10.0, -7); }), "there is no lane -7"));
-  CHECK(says(error_of([&] { (void)map->find_lane("8", 10.0, -1); }), "no such road"));
+  refuses("the road is 300 m long", [&] { (void)map->find_lane("1", 300.5, -1); });
+  refuses("before the road", [&] { (void)map->find_lane("1", -0.5, -1); });
+  refuses("there is no lane -7", [&] { (void)map->find_lane("1", 10.0, -7); });
+  refuses("no such road", [&] { (void)map->find_lane("8", 10.0, -1); });
 }
 
 TEST_CASE("ids are unique, kept, and never used again") {
@@ -122,11 +126,11 @@ TEST_CASE("ids are unique, kept, and never used again") {
   auto const c = world.add({.position = {70, -1.75}});
   CHECK(b == static_cast<cb::AgentId>(17));
   CHECK(static_cast<std::uint32_t>(c) == 18);
-  CHECK(says(error_of([&] { world.add({.position = {100, -1.75}, .id = b}); }), "already"));
+  refuses("already", [&] { world.add({.position = {100, -1.75}, .id = b}); });
   world.remove(c);
   CHECK(static_cast<std::uint32_t>(world.add({.position = {70, -1.75}})) == 19);
-  CHECK(says(error_of([&] { (void)world.state(c); }), "agent 18: the world has no such agent"));
-  CHECK(says(error_of([&] { world.remove(c); }), "no such agent"));
+  refuses("agent 18: the world has no such agent", [&] { (void)world.state(c); });
+  refuses("no such agent", [&] { world.remove(c); });
   CHECK(world.state(a).x == 10);
 }
 
@@ -145,28 +149,12 @@ TEST_CASE("agents that pass the end of the road leave traffic, and are taken out
   CHECK(world.size() == 1);
 }
 
-TEST_CASE("an agent whose route ends where the road goes on has arrived") {
-  auto const map = own_map("merging.xodr");
-  cb::map::Lane const* first = nullptr;
-  for (auto const& lane : map->lanes())
-    if (lane.drivable() && lane.predecessors.empty() && !lane.successors.empty() && first == nullptr) first = &lane;
-  REQUIRE(first != nullptr);
-  Sim world(map);
-  auto const pose = first->path.pose(first->length() - 5);
-  auto const id = world.add({.position = pose.position(),
-                             .speed = 20,
-                             .behavior = cb::ConstantAcceleration{},
-                             .route = cb::map::Route{{first->id}}});
-  REQUIRE(world.step(0.5));
-  CHECK(world.status(id) == cb::AgentStatus::arrived);
-}
-
 TEST_CASE("a step of 0 s, NaN, a negative time or more than an hour changes nothing and reports why") {
   Sim world(straight_road());
   world.add({.position = {10, -1.75}, .speed = 5});
   CHECK(Sim(world).step(Sim::longest_step));
   auto const before = world.frame();
-  for (double dt : {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e9,
+  for (double dt : {0.0, -0.1, not_a_number, std::numeric_limits<double>::infinity(), 1e9,
                     std::nextafter(Sim::longest_step, 1e9)}) {
     auto const result = world.step(dt);
     CHECK_FALSE(result.valid());
@@ -186,7 +174,7 @@ struct Broken {
     cb::Plan<View> plan;
     auto next = view.state();
     next.time += how == How::too_short ? dt / 2 : dt;
-    if (how == How::not_a_number) next.x = std::numeric_limits<double>::quiet_NaN();
+    if (how == How::not_a_number) next.x = not_a_number;
     if (how == How::backwards) next.speed = -5.0;
     if (how == How::too_fast) next.speed = 1e9;
     plan.trajectory.push_back(view.state());
@@ -235,7 +223,7 @@ TEST_CASE("history keeps the last frames with their actions, and copies do not t
   CHECK(world.history_size() == 3);
   for (std::size_t back = 1; back <= 3; ++back) CHECK(world.history(back) == frames[frames.size() - back]);
   CHECK(world.history(1).agents[0].action.acceleration > 0.0);
-  CHECK(says(error_of([&] { (void)world.history(4); }), "no frame 4 steps back"));
+  refuses("no frame 4 steps back", [&] { (void)world.history(4); });
   Sim const copy = world;
   CHECK(copy.history_size() == 0);
   CHECK(world.observe(id).predict(cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{})).history_size() == 0);
@@ -258,7 +246,7 @@ TEST_CASE("static objects stop traffic in the lanes they reach into, and only th
   CHECK(world.state(left).x > 200.0);
   world.remove_object(object);
   CHECK_FALSE(world.observe(right).ahead().has_value());
-  CHECK(says(error_of([&] { world.remove_object(object); }), "no such object"));
+  refuses("no such object", [&] { world.remove_object(object); });
 }
 
 TEST_CASE("an agent driven from outside follows its input and changes lane corridors") {
@@ -274,7 +262,7 @@ TEST_CASE("an agent driven from outside follows its input and changes lane corri
   world.memory<cb::ExternalInput>(ego) = {-4.0, 0.0};
   for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.2));
   CHECK(world.state(ego).speed == 0.0);
-  CHECK(says(error_of([&] { (void)world.memory<cb::IdmClassic>(ego); }), "behaviour"));
+  refuses("behaviour", [&] { (void)world.memory<cb::IdmClassic>(ego); });
 }
 
 TEST_CASE("an agent that reaches over its lane's border is seen in both lanes") {
@@ -296,9 +284,9 @@ TEST_CASE("states set from outside place the agent anew") {
   world.set_state(id, {.x = 300, .y = -1.5, .heading = 0.01, .speed = 7});
   CHECK(world.record(id).lane.s == doctest::Approx(300));
   CHECK(index_of(world.record(id).lane.corridor) == 0);
-  CHECK(says(error_of([&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); }), "not a finite"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "120 m outside the lanes of its route"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "500 m outside the lanes of its route"));
+  refuses("not a finite", [&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); });
+  refuses("120 m outside the lanes of its route", [&] { world.set_state(id, {.x = 300, .y = 120}); });
+  refuses("500 m outside the lanes of its route", [&] { world.set_state(id, {.x = -500, .y = -5.25}); });
   CHECK(world.state(id).x == 300);
 }
 
@@ -310,7 +298,7 @@ TEST_CASE("a state that add refuses set_state refuses with the same words, and b
     cb::State state;
     std::string said;
   };
-  double const pi = cb::geometry::pi, nan = std::numeric_limits<double>::quiet_NaN();
+  double const pi = cb::geometry::pi, nan = not_a_number;
   for (auto const& [state, said] : {
            Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -3}, "its speed is -3, not a number from 0 to 1000 m/s"},
            Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -0.11}, "its speed is -0.11, not"},
@@ -344,7 +332,7 @@ TEST_CASE("a state that add refuses set_state refuses with the same words, and b
     CHECK_MESSAGE(on_route.empty() == said.empty(), on_route);
     CHECK_MESSAGE(entering.empty() == said.empty(), entering);
     CHECK_MESSAGE(setting.empty() == said.empty(), setting);
-    CHECK_MESSAGE(says(setting, said), setting);
+    CHECK_MESSAGE(setting.find(said) != std::string::npos, setting);
     CHECK((setting.empty() || world.frame() == before));
     if (setting.empty()) CHECK(world.state(id).speed == std::max(state.speed, 0.0));
     world.restore(before);
@@ -360,19 +348,6 @@ TEST_CASE("an agent that enters beside its route is in the lane where it stands"
   auto const entered = world.record(id).lane;
   world.set_state(id, {.x = 100, .y = -5.25, .speed = 10});
   CHECK(world.record(id).lane == entered);
-}
-
-TEST_CASE("another model of behaviour ends the history: its frames fit no more") {
-  Sim world(straight_road(1));
-  auto const id = world.add({.position = {100, -1.75}, .speed = 10});
-  world.keep_history(5);
-  REQUIRE(world.step(0.2));
-  world.set_behavior(id, cb::IdmClassic{.desired_speed = 20.0});
-  CHECK(world.history_size() == 1);
-  CHECK_NOTHROW(world.restore(world.history(1)));
-  REQUIRE(world.step(0.2));
-  world.set_behavior(id, cb::ConstantAcceleration{});
-  CHECK(world.history_size() == 0);
 }
 
 TEST_CASE("a vehicle that was measured to stand backs up no metre") {
@@ -399,7 +374,7 @@ TEST_CASE("with Reroute::yes a state is taken off the route, and the agent gets 
   CHECK(world.frame().agents[0].goals_passed == 1);
   auto const shared = world;
   cb::State const state{.x = 300, .y = 1.75, .heading = cb::geometry::pi, .speed = 5};
-  CHECK(says(error_of([&] { world.set_state(id, state); }), "against the direction of its lane"));
+  refuses("against the direction of its lane", [&] { world.set_state(id, state); });
   world.set_state(id, state, cb::Reroute::yes);
   CHECK(world.lane_of(id) == back);
   CHECK(world.reached_goal(id));
@@ -410,14 +385,13 @@ TEST_CASE("with Reroute::yes a state is taken off the route, and the agent gets 
   REQUIRE(world.step(1.0));
   REQUIRE(anew.step(1.0));
   CHECK(world.state(id) == anew.frame().agents[0].state);
-  CHECK(says(error_of([&] { world.set_state(id, {.x = 100, .y = 60, .heading = 0}, cb::Reroute::yes); }),
-             "no drivable lane within 5 m"));
+  refuses("no drivable lane within 5 m",
+          [&] { world.set_state(id, {.x = 100, .y = 60, .heading = 0}, cb::Reroute::yes); });
   // From here no way leads back.
-  CHECK(says(error_of([&] {
-               auto other = shared;
-               other.set_state(id, {.x = 100, .y = -1.75}, cb::Reroute::yes);
-             }),
-             "there is no route from"));
+  refuses("there is no route from", [&] {
+    auto other = shared;
+    other.set_state(id, {.x = 100, .y = -1.75}, cb::Reroute::yes);
+  });
 }
 
 namespace {
@@ -447,17 +421,24 @@ TEST_CASE("an agent that is re-routed in the middle of a lane change has forgott
   CHECK(world.memory<cb::Mobil>(id) == cb::Mobil::Memory{});
   for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.1));
   CHECK(world.state(id).y == doctest::Approx(1.75));
-  CHECK(says(error_of([&] { world.restore(before); }), "the frame is from before an agent entered, left"));
+  refuses("the frame is from before an agent entered, left", [&] { world.restore(before); });
 }
 
-TEST_CASE("frames from before another model of behaviour do not fit, those from before other parameters do") {
+TEST_CASE(
+    "frames from before another model of behaviour do not fit, and the history ends; other parameters change neither") {
   Sim world(three_and_one());
   auto const id = world.add({.position = {100, -1.75}, .speed = 10});
+  world.keep_history(5);
+  REQUIRE(world.step(0.2));
   auto const before = world.frame();
   world.set_behavior(id, cb::IdmClassic{.desired_speed = 3.0});
-  world.restore(before);
+  CHECK(world.history_size() == 1);
+  CHECK_NOTHROW(world.restore(world.history(1)));
+  CHECK_NOTHROW(world.restore(before));
+  REQUIRE(world.step(0.2));
   world.set_behavior(id, cb::ConstantAcceleration{});
-  CHECK(says(error_of([&] { world.restore(before); }), "model of behaviour"));
+  CHECK(world.history_size() == 0);
+  refuses("model of behaviour", [&] { world.restore(before); });
   REQUIRE(world.step(0.2));
 }
 
@@ -469,8 +450,8 @@ TEST_CASE("an agent on a free corridor is not re-routed: no lane leads on from t
                              .behavior = cb::ConstantAcceleration{},
                              .road = cb::map::build_free_corridor(world.map(), way)});
   auto const before = world.frame();
-  CHECK(says(error_of([&] { world.set_state(id, {.x = 50, .y = -8, .heading = 0.3, .speed = 1}, cb::Reroute::yes); }),
-             "agent 0: it is on a free corridor"));
+  refuses("agent 0: it is on a free corridor",
+          [&] { world.set_state(id, {.x = 50, .y = -8, .heading = 0.3, .speed = 1}, cb::Reroute::yes); });
   CHECK(world.frame() == before);
 }
 
@@ -486,7 +467,7 @@ TEST_CASE("agents on equal ways share a free corridor") {
   REQUIRE(next);
   CHECK(next->agent == ahead);
   CHECK(!world.observe(beside).ahead());
-  CHECK(says(error_of([&] { add(90, -18, way); }), "m from its road"));
+  refuses("m from its road", [&] { add(90, -18, way); });
 }
 
 TEST_CASE("a state set where the route passes twice is taken for the pass that the agent is on") {
@@ -521,9 +502,9 @@ TEST_CASE("a frame is put back, as a search does, and only one that fits") {
   CHECK(node.frame() == later);
   CHECK(&node.roster() == &world.roster());
   world.add({.position = {60, -1.75}});
-  CHECK(says(error_of([&] { world.restore(root); }), "1 records, the roster 2 agents"));
+  refuses("1 records, the roster 2 agents", [&] { world.restore(root); });
   CHECK(world.state(id).x == later.agents[0].state.x);
-  CHECK(says(error_of([&] { Sim bad(nullptr, world.shared_roster(), root); }), "no map"));
+  refuses("no map", [&] { Sim bad(nullptr, world.shared_roster(), root); });
 }
 
 TEST_CASE("after an assignment, and after a frame is put back, neighbours are those of the new frame") {
@@ -571,36 +552,6 @@ TEST_CASE("frames are exchanged: each world goes on where the other's frame was,
   CHECK(frame == later);
 }
 
-TEST_CASE("an agent on the wrong lane at a fork leaves its route; one on the exit lane drives to the end of the ramp") {
-  auto const map = own_map("highway_exit.xodr");
-  auto const lane_of = [&](cb::map::LaneType type) {
-    auto const found = std::ranges::find(map->lanes(), type, &cb::map::Lane::type);
-    REQUIRE(found != map->lanes().end());
-    return found->id;
-  };
-  auto const ramp = lane_of(cb::map::LaneType::off_ramp), exit = lane_of(cb::map::LaneType::exit);
-  for (bool const takes_exit : {true, false}) {
-    Sim world(map);
-    auto const& path = map->lane(exit).path;
-    auto const pose = path.pose(0.8 * path.length());
-    auto const start = takes_exit ? pose.position() : cb::geometry::to_map(pose, {0.0, 3.6});
-    auto const id = world.add({.position = start, .heading = pose.heading, .speed = 12, .goal = cb::ReachLane{ramp}});
-    for (int k = 0; k < 400 && world.status(id) == cb::AgentStatus::driving; ++k) REQUIRE(world.step(0.5));
-    CAPTURE(takes_exit);
-    CHECK(world.status(id) == (takes_exit ? cb::AgentStatus::left_map : cb::AgentStatus::off_route));
-  }
-}
-
-TEST_CASE("an agent that passes the end of its route has arrived") {
-  auto const map = own_map("merging.xodr");
-  Sim world(map);
-  auto const ramp = map->find_lane("2", 10, -1), first = map->find_lane("3", 10, -3);
-  auto const id =
-      world.add({.position = map->lane(ramp).path.pose(150.0).position(), .speed = 15, .goal = cb::ReachLane{first}});
-  while (world.status(id) == cb::AgentStatus::driving) REQUIRE(world.step(0.5));
-  CHECK(world.status(id) == cb::AgentStatus::arrived);
-}
-
 TEST_CASE("an object that covers whole lanes stands in them, and goes with its entries") {
   Sim world(own_map("merging.xodr"));
   auto const id = world.add({.position = {20, -1.75}, .speed = 10});
@@ -615,18 +566,15 @@ TEST_CASE("an object that covers whole lanes stands in them, and goes with its e
   CHECK_FALSE(world.observe(id).ahead().has_value());
   CHECK(world.roster().object_entries.empty());
   cb::geometry::Polygon const vast({{0, 0}, {1e200, 0}, {0, 1e200}});
-  CHECK(says(error_of([&] { world.add_object(vast); }), "10 km"));
+  refuses("10 km", [&] { world.add_object(vast); });
 }
 
 TEST_CASE("a prediction with parameters that make no sense is refused") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}});
-  auto const nan = std::numeric_limits<double>::quiet_NaN();
-  CHECK(says(error_of([&] {
-               (void)world.observe(id).predict(
-                   cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{.desired_speed = nan}));
-             }),
-             "desired_speed"));
+  refuses("desired_speed", [&] {
+    (void)world.observe(id).predict(cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{.desired_speed = not_a_number}));
+  });
 }
 
 TEST_CASE("a step may be long: what lies half a circle on is found") {
@@ -646,27 +594,6 @@ TEST_CASE("set_state brings an agent that has left back into traffic") {
   CHECK(world.status(id) == cb::AgentStatus::driving);
   REQUIRE(world.step(1.0));
   CHECK(world.state(id).x > 24.0);
-}
-
-TEST_CASE("goals are reached by lane and by polygon") {
-  Sim world(straight_road(2));
-  std::vector<cb::geometry::Point> const area{{100, -3.5}, {130, -3.5}, {130, 0}, {100, 0}};
-  auto const by_area = world.add({.position = {80, -1.75},
-                                  .speed = 10,
-                                  .behavior = cb::ConstantAcceleration{},
-                                  .goal = cb::ReachPolygon{cb::geometry::Polygon(area)}});
-  auto const by_lane = world.add({.position = {80, -5.25},
-                                  .speed = 10,
-                                  .behavior = cb::ConstantAcceleration{},
-                                  .goal = cb::ReachLane{world.map().find_lane("1", 0, -2), 100.0, 120.0}});
-  CHECK_FALSE(world.reached_goal(by_area));
-  CHECK_FALSE(world.reached_goal(by_lane));
-  for (int i = 0; i < 15; ++i) REQUIRE(world.step(0.2));  // at 110 m
-  CHECK(world.reached_goal(by_area));
-  CHECK(world.reached_goal(by_lane));
-  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));  // at 130 m
-  CHECK_FALSE(world.reached_goal(by_area));
-  CHECK_FALSE(world.reached_goal(by_lane));
 }
 
 TEST_CASE("a prediction shows what the observer expects, whatever the others really do") {
@@ -803,18 +730,20 @@ TEST_CASE("a record driven to the state of a step has the lane, the status and t
                   .goal = cb::GoalSequence{{cb::ReachLane{lane, 60.0, 70.0}, cb::ReachLane{lane, 120.0, 130.0}}}});
   CHECK(compare(past_goals) == 2);
 
-  auto const exit = own_map("highway_exit.xodr");
-  Sim past_exit(exit);
+  auto const fork = own_map("highway_exit.xodr");
   auto const of_type = [&](cb::map::LaneType type) -> cb::map::Lane const& {
-    return *std::ranges::find(exit->lanes(), type, &cb::map::Lane::type);
+    return *std::ranges::find(fork->lanes(), type, &cb::map::Lane::type);
   };
   auto const& path = of_type(cb::map::LaneType::exit).path;
   auto const pose = path.pose(0.8 * path.length());
-  past_exit.add({.position = cb::geometry::to_map(pose, {0.0, 3.6}),
-                 .heading = pose.heading,
-                 .speed = 12,
-                 .goal = cb::ReachLane{of_type(cb::map::LaneType::off_ramp).id}});
-  compare(past_exit);
+  for (double const beside : {3.6, 0.0}) {  // the exit lane
+    Sim to_the_ramp(fork);
+    to_the_ramp.add({.position = cb::geometry::to_map(pose, {0.0, beside}),
+                     .heading = pose.heading,
+                     .speed = 12,
+                     .goal = cb::ReachLane{of_type(cb::map::LaneType::off_ramp).id}});
+    compare(to_the_ramp);
+  }
 
   auto const merging = own_map("merging.xodr");
   Sim at_destination(merging);
@@ -824,7 +753,7 @@ TEST_CASE("a record driven to the state of a step has the lane, the status and t
                       .goal = cb::ReachLane{merging->find_lane("3", 10, -3)}});
   compare(at_destination);
   CHECK(ends == std::vector{cb::AgentStatus::left_map, cb::AgentStatus::left_map, cb::AgentStatus::off_route,
-                            cb::AgentStatus::arrived});
+                            cb::AgentStatus::left_map, cb::AgentStatus::arrived});
 }
 
 TEST_CASE("the largest shape that a view knows holds those of all agents, in a predicted world too") {
