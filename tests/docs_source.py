@@ -21,6 +21,7 @@ PARAMETER = re.compile(r'parameter\(\s*"[^"]*",\s*&(?P<owner>\w+)::(?P<field>\w+
 STRUCT = re.compile(r"^(?:struct|class) (\w+)[^;{]*{\n(.*?)^};", re.S | re.M)
 FIELD = re.compile(r"  [\w:<>, ]+ (\w+)(?: = [^;]*|{[^;]*})?;")
 SHARED = re.compile(r"\bauto (\w+_parameters)\(")  # makes the parameters of several structs
+DETAIL = re.compile(r"^namespace (?:cambium::)?(?:\w+::)?detail {\n.*?^}  // namespace .*\n", re.S | re.M)
 NAMESPACE = re.compile(r"(?:\n((?:///.*\n)+))?^namespace ([\w:]+) {\n(\n?)|^}  // namespace .*\n", re.M)
 
 
@@ -50,11 +51,12 @@ def header(text, room, said):
     def namespace(found):  # as many lines as before
         if not found[2]:
             return f"/** @}} */ {found[0]}" if grouped.pop() else found[0]
-        grouped.append(bool(found[3]) and "detail" not in found[2] and room in rooms)
+        grouped.append(bool(found[3]) and room in rooms)
         about = f"/// @file\n{found[1]}" if found[1] else ""
         blank = f"  /** @addtogroup {room}\n@{{ */\n" if grouped[-1] else f"\n{found[3]}"
         return f"{about}namespace {found[2]} {{{blank}"
 
+    text = DETAIL.sub(lambda found: "\n" * found[0].count("\n"), text)
     return NAMESPACE.sub(namespace, STRUCT.sub(struct, text))
 
 

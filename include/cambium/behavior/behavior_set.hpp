@@ -104,6 +104,7 @@ struct BehaviorSet {
   }
 };
 
+/// Whether `T` is a `BehaviorSet`.
 template <class T>
 inline constexpr bool is_behavior_set = false;
 template <class... Behaviors>

@@ -121,10 +121,12 @@ template <class Driver>
                      .time_margin = 2.0}
       .of<Driver>();
 }
+/// A driver of usual temperament: the parameters of `Temperament{}`.
 template <class Driver>
 [[nodiscard]] constexpr Driver normal() {
   return Temperament{}.of<Driver>();
 }
+/// A driver who keeps short gaps and changes lanes for small advantages.
 template <class Driver>
 [[nodiscard]] constexpr Driver aggressive() {
   return Temperament{.idm = aggressive(),

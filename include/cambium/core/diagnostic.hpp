@@ -13,6 +13,7 @@ enum class Severity {
   warning,  ///< a part of the file was left out or replaced, or the map may not be as intended
 };
 
+/// "info" or "warning".
 [[nodiscard]] constexpr std::string_view to_string(Severity severity) {
   return severity == Severity::info ? "info" : "warning";
 }
@@ -31,7 +32,7 @@ struct Diagnostic {
 };
 
 /// One line: "file:line: warning: <element> of ids: sentence". The fields hold text from the file unchanged; this line
-/// escapes control characters (\x1b).
+/// escapes control characters (as `\x1b`).
 [[nodiscard]] inline std::string to_string(Diagnostic const& d) {
   std::string text = d.file;
   if (d.line > 0) text += ":" + std::to_string(d.line);

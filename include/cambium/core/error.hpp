@@ -18,7 +18,7 @@ namespace detail {
 }  // namespace detail
 
 /// Base class of everything the library throws. The step path never throws. `what()` reads "where: what; remedy", with
-/// control characters escaped (\x1b).
+/// control characters escaped (as `\x1b`).
 class Error : public std::runtime_error {
  public:
   /// `where`: file, line, element, key or id; `what`: one clause; `remedy`: what the user can do (may be empty).

@@ -44,6 +44,7 @@ template <StrongId Id>
   return static_cast<std::size_t>(id);
 }
 
+/// Whether an id names something: it is not `none`.
 template <StrongId Id>
 [[nodiscard]] constexpr bool is_valid(Id id) {
   return id != none<Id>;

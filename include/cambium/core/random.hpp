@@ -7,7 +7,9 @@
 
 namespace cambium {
 
+/// Counter of `philox4x32`.
 using PhiloxCounter = std::array<std::uint32_t, 4>;
+/// Key of `philox4x32`.
 using PhiloxKey = std::array<std::uint32_t, 2>;
 
 /// Philox4x32 with 10 rounds (Salmon, Moraes, Dror, Shaw 2011, "Parallel random numbers: as easy as 1, 2, 3"): 128

@@ -31,6 +31,7 @@ struct BasicState {
   friend bool operator==(BasicState const&, BasicState const&) = default;
 };
 
+/// The state that most vehicle models have.
 using State = BasicState<double>;
 
 /// A state that a world can step: trivially copyable, with the named fields of `BasicState` and any fields that the

@@ -64,9 +64,11 @@ struct TypeInfo {
     number
   };
   using Get = TypeInfo const& (*)();
+  /// The fields of a struct.
   struct Fields : std::span<FieldInfo const> {
     std::uint16_t hash;  ///< of their names and kinds, see `detail::hash_of_fields`
   };
+  /// The elements of a list, one after the other in memory.
   struct Elements {
     void const* first;
     std::size_t count, size;  ///< number; of one [bytes]
@@ -405,7 +407,7 @@ template <class T>
 }  // namespace detail
 
 template <class T>
-[[nodiscard]] TypeInfo const& type_info() {
+TypeInfo const& type_info() {
   static TypeInfo const info = detail::make_type_info<T>();
   return info;
 }

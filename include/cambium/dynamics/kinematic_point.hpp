@@ -9,6 +9,7 @@
 
 namespace cambium {
 
+/// Input of `KinematicPoint`.
 template <class Scalar>
 struct KinematicPointInput {
   Scalar acceleration{};  ///< along the heading [m/s^2]

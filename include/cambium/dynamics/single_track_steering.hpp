@@ -30,6 +30,7 @@ struct BasicSteeringState {
   friend bool operator==(BasicSteeringState const&, BasicSteeringState const&) = default;
 };
 
+/// Input of `SingleTrackSteering`.
 template <class Scalar>
 struct SteeringRateInput {
   Scalar acceleration{};   ///< [m/s^2]

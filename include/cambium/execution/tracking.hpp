@@ -79,6 +79,7 @@ struct TrackingError {
   double speed{};    ///< speed minus that of the reference [m/s]
 };
 
+/// Where `x` is relative to the reference.
 template <MotionState S>
 [[nodiscard]] TrackingError tracking_error(Reference const& reference, S const& x) {
   auto const [sin, cos] = geometry::sin_cos(reference.heading);

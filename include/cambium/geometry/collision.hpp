@@ -65,6 +65,7 @@ template <bool closed>
   return detail::border_meets_box<true>(polygon, box) || polygon.contains(box.center());
 }
 
+/// As above.
 [[nodiscard]] inline bool intersects(Polygon const& polygon, OrientedBox const& box) {
   return intersects(box, polygon);
 }

@@ -51,6 +51,7 @@ struct Projection {
 ///     segment i - 1  segment i   segment i + 1
 class Line {
  public:
+  /// The straight piece between two points.
   struct Segment {
     double s, x, y;    ///< start: arc length, position
     double ux, uy;     ///< unit direction

@@ -85,6 +85,7 @@ struct Junction {
 /// (safe on many threads); made by `load_opendrive`, `MapBuilder` or `build_map`, shared by worlds.
 class Map {
  public:
+  /// What a map is made of, see `build_map`.
   struct Parts {
     std::vector<Road> roads;
     std::vector<Lane> lanes;

@@ -17,6 +17,7 @@ struct FreezeRun {
     return to_snapshot(options, run.before, run.position);
   }
 };
+/// The `FreezeRun` to pass to a benchmark.
 inline constexpr FreezeRun freeze_run{};
 
 }  // namespace cambium

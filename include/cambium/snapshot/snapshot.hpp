@@ -43,7 +43,7 @@ struct SnapshotOptions {
   std::optional<std::uint64_t> result{};  ///< `snapshot_hash` of what the next cycle made of these parts
 };
 
-/// What the head of a snapshot says. In its texts control characters are escaped (\x0a).
+/// What the head of a snapshot says. In its texts control characters are escaped (as `\x0a`).
 struct SnapshotInfo : SnapshotOptions {
   std::string library{};                    ///< version of cambium
   std::string build{};                      ///< compiler, whether it fuses multiply-adds, and asserts

@@ -81,6 +81,7 @@ struct RosterBase : RosterFacts {
 /// it is copied on write. Agents are sorted by id; an agent's index is its slot, the same as in the frame.
 template <class Behavior, class Execution, class Dynamics, class Observer>
 struct Roster : RosterBase {
+  /// What a step does not change of one agent.
   struct Agent {
     AgentId id = none<AgentId>;
     geometry::Shape shape;

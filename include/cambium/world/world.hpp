@@ -34,6 +34,7 @@
 
 namespace cambium {
 
+/// How a world begins.
 struct WorldOptions {
   std::uint64_t seed = 0;  ///< for all random numbers in the world
   double time = 0.0;       ///< start time [s]

@@ -66,14 +66,19 @@ struct Over {
   double last_ = 0.0, duration_ = 0.0;
 };
 
+/// Least value of `E` so far.
 template <class E>
 using Least = Over<E, Fold::least>;
+/// Largest value of `E` so far.
 template <class E>
 using Most = Over<E, Fold::most>;
+/// Mean of `E` over time.
 template <class E>
 using MeanOf = Over<E, Fold::mean>;
+/// Integral of `E` over time.
 template <class E>
 using Integral = Over<E, Fold::integral>;
+/// How often `E` became true.
 template <class E>
 using Times = Over<E, Fold::times>;
 

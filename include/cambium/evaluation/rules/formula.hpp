@@ -103,23 +103,33 @@ class Formula {
 /// As text in ASCII, with no more parentheses than needed; reads back as the same formula. O(length).
 [[nodiscard]] std::string to_string(Formula const& formula);
 
+/// Not f.
 [[nodiscard]] inline Formula operator!(Formula const& f) { return Formula::of(Formula::Kind::negation, f); }
+/// f and g.
 [[nodiscard]] inline Formula operator&&(Formula const& f, Formula const& g) {
   return Formula::of(Formula::Kind::conjunction, f, g);
 }
+/// f or g.
 [[nodiscard]] inline Formula operator||(Formula const& f, Formula const& g) {
   return Formula::of(Formula::Kind::disjunction, f, g);
 }
+/// f implies g.
 [[nodiscard]] inline Formula implies(Formula const& f, Formula const& g) {
   return Formula::of(Formula::Kind::implication, f, g);
 }
+/// There is a next step, and f holds from it on.
 [[nodiscard]] inline Formula next(Formula const& f) { return Formula::of(Formula::Kind::next, f); }
+/// f holds from the next step on, if there is one.
 [[nodiscard]] inline Formula weak_next(Formula const& f) { return Formula::of(Formula::Kind::weak_next, f); }
+/// f holds at some step from now on.
 [[nodiscard]] inline Formula eventually(Formula const& f) { return Formula::of(Formula::Kind::eventually, f); }
+/// f holds at each step from now on.
 [[nodiscard]] inline Formula always(Formula const& f) { return Formula::of(Formula::Kind::always, f); }
+/// g holds at some step, and f at each step before it.
 [[nodiscard]] inline Formula until(Formula const& f, Formula const& g) {
   return Formula::of(Formula::Kind::until, f, g);
 }
+/// f until g, or f always.
 [[nodiscard]] inline Formula weak_until(Formula const& f, Formula const& g) {
   return Formula::of(Formula::Kind::weak_until, f, g);
 }

@@ -24,6 +24,7 @@ enum class NetworkFault : std::uint8_t {
   no_way_in,      ///< the lane has no predecessor, and nothing ends at its begin
 };
 
+/// The name of a fault, such as "border_step".
 [[nodiscard]] constexpr std::string_view to_string(NetworkFault fault) {
   constexpr std::string_view words[] = {"dangling", "one_sided",     "gap",      "border_step",
                                         "kink",     "possible_link", "dead_end", "no_way_in"};

@@ -21,6 +21,7 @@ namespace cambium::map::opendrive {
 /// Which end of a road a link touches; `none`: not written.
 enum class ContactPoint { none, start, end };
 
+/// What a road links to.
 enum class ElementType { road, junction };
 
 /// Side of the road that traffic keeps to: right- or left-hand traffic.
@@ -42,6 +43,7 @@ struct HeaderOffset {
   friend bool operator==(HeaderOffset const&, HeaderOffset const&) = default;
 };
 
+/// `<header>`.
 struct Header {
   int rev_major = 0;  ///< 0: not written
   int rev_minor = 0;
@@ -68,6 +70,7 @@ struct RoadLink {
   friend bool operator==(RoadLink const&, RoadLink const&) = default;
 };
 
+/// `<type>`: what kind of road it is from `s` on, and its speed limit.
 struct RoadType {
   double s{};                   ///< [m]
   std::string type;             ///< e.g. "motorway"
@@ -102,6 +105,7 @@ struct GeometryRest {
   friend bool operator==(GeometryRest const&, GeometryRest const&) = default;
 };
 
+/// `<road>`.
 struct RoadElement {
   std::string id;
   std::string name;
@@ -133,6 +137,7 @@ struct RoadElement {
   friend bool operator==(RoadElement const&, RoadElement const&) = default;
 };
 
+/// `<laneLink>`: ids of the lane on the incoming and on the connecting road.
 struct LaneLink {
   int from = 0;
   int to = 0;
@@ -171,6 +176,7 @@ struct Priority {
   friend bool operator==(Priority const&, Priority const&) = default;
 };
 
+/// `<junction>`.
 struct JunctionElement {
   std::string id;
   std::string name;
@@ -183,6 +189,7 @@ struct JunctionElement {
   friend bool operator==(JunctionElement const&, JunctionElement const&) = default;
 };
 
+/// `<OpenDRIVE>`: all that a file says.
 struct Document {
   Header header;
   std::vector<RoadElement> roads;
@@ -216,5 +223,6 @@ struct Document {
 }  // namespace cambium::map::opendrive
 
 namespace cambium::map {
+/// An OpenDRIVE file as a struct.
 using OpenDriveDocument = opendrive::Document;
 }  // namespace cambium::map

@@ -22,6 +22,7 @@ struct FileLine {
   }
 };
 
+/// An attribute of an XML element, as written.
 struct Attribute {
   std::string name;
   std::string value;

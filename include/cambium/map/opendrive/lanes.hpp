@@ -29,6 +29,7 @@ struct SpeedRecord {
   friend bool operator==(SpeedRecord const&, SpeedRecord const&) = default;
 };
 
+/// `<roadMark>`.
 struct RoadMark {
   double s_offset{};  ///< from the section's start [m]
   std::string type;   ///< e.g. "broken", "solid solid"
@@ -51,6 +52,7 @@ struct HeightRecord {
   friend bool operator==(HeightRecord const&, HeightRecord const&) = default;
 };
 
+/// `<lane>`.
 struct LaneElement {
   int id = 0;  ///< left > 0, right < 0, counted from the centre lane 0
   LaneType type = LaneType::none;
@@ -68,6 +70,7 @@ struct LaneElement {
   friend bool operator==(LaneElement const&, LaneElement const&) = default;
 };
 
+/// `<laneSection>`.
 struct LaneSection {
   double s{};                      ///< start station [m]
   bool single_side = false;        ///< it speaks only for the sides that it has lanes for; the reader adds the other's

@@ -17,6 +17,7 @@
 
 namespace cambium::map {
 
+/// What a piece of a plan view is.
 enum class GeometryKind { line, arc, spiral, cubic };
 
 /// One piece of a plan view, in the map frame: it starts at (x, y, heading). Its curvature runs linearly with the arc

@@ -36,6 +36,7 @@ struct RoadLane {
   std::vector<LaneHeight> heights;  ///< above the road's surface, sorted
 };
 
+/// A stretch of a road along which its lanes stay the same.
 struct RoadSection {
   double begin{}, end{};        ///< road s [m]
   std::vector<RoadLane> lanes;  ///< from left (largest number) to right; without lane 0
