@@ -12,12 +12,12 @@
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <string_view>
 
 #include "../examples/program.hpp"
+#include "stored.hpp"
 
 using namespace cambium;
 
@@ -31,22 +31,8 @@ JobOutcome outcome_in(detail::JobProcess& process, std::size_t job) {
 }
 
 #ifdef CAMBIUM_MPIEXEC
-/// All rows of a database but their times, as text.
-std::string results_in(std::filesystem::path const& file) {
-  auto store = ResultStore::existing(file);
-  std::string text;
-  store.for_each([&](ResultRow const& row) {
-    text += row.key.behavior + " " + std::to_string(row.key.scenario) + " " + to_string(row.result) + "\n";
-  });
-  return text;
-}
-
 std::size_t lines_in(std::string const& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
-
-std::ptrdiff_t files_in(std::filesystem::path const& folder) {
-  return std::distance(std::filesystem::directory_iterator(folder), {});
 }
 
 /// Runs a program under MPI, also as root and on few cores; once more if it does not end, as happens to Open MPI 4.1
@@ -135,12 +121,13 @@ TEST_CASE("3 ranks give the rows of 1 thread and 8 threads, and a job that crash
   REQUIRE(run.code == 0);
   CHECK(run.out.find("60 runs in ") != std::string::npos);
   CHECK(run.out.find(" on 2 ranks; results in ") != std::string::npos);
-  auto const rows = results_in(folder.path() / "3.db");
+  auto const rows = stored::results_in(folder.path() / "3.db");
   CHECK(lines_in(rows) == 60);
   CHECK(rows.find("idm_classic 0 ") != std::string::npos);
   CHECK(rows.find("the process that ran it died, twice: signal 11") != std::string::npos);
   CHECK(rows.find("out of ideas") != std::string::npos);
-  CHECK(files_in(folder.path() / "3_replays") == 20);  // those that throw; a process that crashes leaves none
+  CHECK(stored::files_in(folder.path() / "3_replays").size() ==
+        20);  // those that throw; a process that crashes leaves none
   for (char const* threads : {"1", "8"}) {
     auto const name = std::string(threads) + "_threads.db";
     auto const other =
@@ -149,7 +136,8 @@ TEST_CASE("3 ranks give the rows of 1 thread and 8 threads, and a job that crash
                 folder.path());
     CAPTURE(other.err);
     REQUIRE(other.code == 0);
-    CHECK(results_in(folder.path() / name) == rows.substr(rows.find("idm_classic 0")));  // without those that crash
+    CHECK(stored::results_in(folder.path() / name) ==
+          rows.substr(rows.find("idm_classic 0")));  // without those that crash
   }
 #else
   support::skip("no MPI");
@@ -169,12 +157,12 @@ TEST_CASE("a benchmark goes on without a rank that dies, or is finished by the s
   CHECK(going_on.code == 0);
   // On a busy machine the others may have done all jobs before rank 2 gets one and dies.
   WARN(going_on.err.find("rank 2 has not been heard from for 3 s: others take its jobs") != std::string::npos);
-  CHECK(lines_in(results_in(folder.path() / "on.db")) == 60);
+  CHECK(lines_in(stored::results_in(folder.path() / "on.db")) == 60);
 
   auto const ended = run_mpi("DYING_RANK=2 " + command("", "off.db"), folder.path());
   WARN(ended.code != 0);  // likewise
   CHECK(run_mpi(command("", "off.db"), folder.path()).code == 0);
-  CHECK(results_in(folder.path() / "off.db") == results_in(folder.path() / "on.db"));
+  CHECK(stored::results_in(folder.path() / "off.db") == stored::results_in(folder.path() / "on.db"));
 
   program::Program const example("benchmark_on_ranks");
   if (example.is_there()) {

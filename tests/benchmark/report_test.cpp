@@ -1,15 +1,15 @@
 #include <cambium/benchmark/comparison.hpp>
+#include <cambium/benchmark/detail/box_plot.hpp>
 #include <cambium/benchmark/html_report.hpp>
+#include <cambium/benchmark/progress.hpp>
 #include <cambium/benchmark/read_results.hpp>
 #include <cambium/benchmark/report.hpp>
 #include <cambium/core/distributions.hpp>
 #include <cambium/core/error.hpp>
 #include <cambium/core/write_file.hpp>
 #include <doctest/doctest.h>
-#include <sqlite3.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -51,15 +51,8 @@ void write(ResultStore& store, ResultGroup const& group) {
   store.commit();
 }
 
-std::size_t number_of(std::string_view key) {
-  auto const& all = measures();
-  auto const found = std::find_if(all.begin(), all.end(), [&](Measure const& m) { return m.key == key; });
-  REQUIRE(found != all.end());
-  return static_cast<std::size_t>(found - all.begin());
-}
-
 Change const& change_of(Comparison const& comparison, std::string_view key) {
-  return comparison.changes.at(number_of(key));
+  return comparison.changes.at(measure_index(key));
 }
 
 /// A driver of whom success, score, proper responses and hard brakings scatter.
@@ -94,7 +87,7 @@ TEST_CASE("a report of known results has their figures") {
   REQUIRE(report.groups.size() == 2);
   CHECK(report.groups[0].label == "idm");
   auto const estimate = [&](std::size_t group, std::string const& key) {
-    return report.estimates[group][number_of(key)];
+    return report.estimates[group][measure_index(key)];
   };
   CHECK(estimate(1, "success").value == 0.75);
   CHECK(estimate(1, "success").interval == wilson_interval(15, 20));
@@ -231,6 +224,19 @@ TEST_CASE("comparisons use equal scenarios only, and say what they left out") {
   CHECK_FALSE(change_of(same.list.front(), "closed_loop_score").differs);
 }
 
+TEST_CASE("progress is told with a rate and what is left, and plots have round numbers along their axes") {
+  CHECK(progress_text(120, 600, 8.0) == "120 of 600, 15/s, 32 s left");
+  CHECK(progress_text(1, 21, 30.0) == "1 of 21, 0.0333/s, 10 min left");
+  CHECK(progress_text(1, 1000, 36.0) == "1 of 1000, 0.0278/s, 10.0 h left");
+  CHECK(detail::quantile_of({1.0, 2.0, 4.0}, 0.75) == 3.0);
+  detail::PlotAxis const linear({{"a", {2.0, 4.0, 12.0}}, {"b", {7.0}}}, 100.0, 200.0);
+  CHECK(linear.at(7.0) == 150.0);
+  CHECK(linear.ticks() == std::vector{2.0, 4.0, 6.0, 8.0, 10.0, 12.0});
+  detail::PlotAxis const decades({{"a", {0.5, 1.0}}, {"b", {40.0, 5000.0}}}, 0.0, 4.0);
+  CHECK(decades.at(50.0) == doctest::Approx(2.0));
+  CHECK(decades.ticks() == std::vector{1.0, 10.0, 100.0, 1000.0});
+}
+
 TEST_CASE("hostile names are escaped in every format") {
   std::string const evil = "<img src=x onerror=alert(1)>,\"'&$%_{}\\</script>\x1b[2J";
   auto group = group_of(evil, 3, [&](RunResult& result, std::int64_t) { result.error = evil; });
@@ -309,22 +315,6 @@ say('text', rows().length);
         0);
   CHECK(said("problem") == "true true");
   CHECK(said("text") == "1");
-}
-
-TEST_CASE("a store that must exist is not made, and a foreign one is not touched") {
-  TemporaryFolder const folder;
-  auto const missing = folder.path() / "missing.db", foreign = folder.path() / "foreign.db";
-  CHECK_THROWS_AS(static_cast<void>(ResultStore::existing(missing)), StoreError);
-  CHECK_FALSE(std::filesystem::exists(missing));
-  sqlite3* db = nullptr;
-  REQUIRE(sqlite3_open(foreign.c_str(), &db) == SQLITE_OK);
-  REQUIRE(sqlite3_exec(db, "CREATE TABLE photos(a)", nullptr, nullptr, nullptr) == SQLITE_OK);
-  sqlite3_close(db);
-  auto const before = program::content_of(foreign);
-  CHECK_THROWS_AS(static_cast<void>(ResultStore::existing(foreign)), StoreError);
-  CHECK(program::content_of(foreign) == before);
-  write_file(missing, "no database at all, just text");
-  CHECK_THROWS_AS(static_cast<void>(ResultStore::existing(missing)), StoreError);
 }
 
 TEST_CASE("the program reports, merges, and exits 1 on a significant loss") {

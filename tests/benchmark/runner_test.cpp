@@ -14,7 +14,7 @@
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
-#include <iterator>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <string>
@@ -24,114 +24,44 @@
 #include "../examples/program.hpp"
 #include "../support/merging_set.hpp"
 #include "../support/skipped.hpp"
+#include "stored.hpp"
 
 using namespace cambium;
+using stored::files_in, stored::results_of, stored::rows_of;
 
 namespace {
 
 using Traffic = World<BehaviorSet<IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
 
-/// Throws in every plan.
-struct Throws {
-  static constexpr char const* name = "throws";
-  static constexpr auto parameters() { return parameter_list(); }
-  template <class View>
-  Plan<View> plan(View const&, NoMemory&, double) const {
-    throw std::runtime_error("out of ideas");
-  }
-};
-/// Returns no plan.
-struct GivesUp {
-  static constexpr char const* name = "gives_up";
-  static constexpr auto parameters() { return parameter_list(); }
-  template <class View>
-  Plan<View> plan(View const&, NoMemory&, double) const {
-    Plan<View> plan;
-    plan.status = PlanStatus::failed;
-    return plan;
-  }
-};
+enum class Fault : std::uint8_t { none, throws, throws_number, no_plan, crash, endless };
 
-/// Throws what is no exception.
-struct ThrowsNumber {
-  static constexpr char const* name = "throws_number";
-  static constexpr auto parameters() { return parameter_list(); }
-  template <class View>
-  Plan<View> plan(View const&, NoMemory&, double) const {
-    throw 42;
+/// Keeps its speed, but for a fault in every plan.
+struct Faulty {
+  Fault fault = Fault::none;
+  static constexpr auto parameters() {
+    return parameter_list(
+        choice("fault", &Faulty::fault, "none|throws|throws_number|no_plan|crash|endless", "in every plan"));
   }
-};
-/// Crashes in scenarios whose seed is odd, and never returns where it can be divided by 4.
-struct Hostile {
-  std::uint64_t seed = 0;
   template <class View>
   Plan<View> plan(View const& view, NoMemory& memory, double dt) const {
-    if (seed % 2 == 1) std::raise(SIGSEGV);
-    while (seed % 4 == 0) std::this_thread::sleep_for(std::chrono::seconds(1));
-    return ConstantAcceleration{}.plan(view, memory, dt);
-  }
-};
-/// Drives by IDM, or throws.
-struct Moody {
-  using Memory = IdmClassic::Memory;
-  bool throws = false;
-  template <class View>
-  Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    if (throws) throw std::runtime_error("in a bad mood");
-    return IdmClassic{.desired_speed = 22.0}.plan(view, memory, dt);
-  }
-};
-/// Keeps its speed, or returns no plan.
-struct Either {
-  bool gives_up = false;
-  template <class View>
-  Plan<View> plan(View const& view, NoMemory& memory, double dt) const {
-    return gives_up ? GivesUp{}.plan(view, memory, dt) : ConstantAcceleration{}.plan(view, memory, dt);
+    auto plan = ConstantAcceleration{}.plan(view, memory, dt);
+    if (fault == Fault::throws) throw std::runtime_error("out of ideas");
+    if (fault == Fault::throws_number) throw 42;
+    if (fault == Fault::no_plan) plan.status = PlanStatus::failed;
+    if (fault == Fault::crash) std::raise(SIGSEGV);
+    while (fault == Fault::endless) std::this_thread::sleep_for(std::chrono::seconds(1));
+    return plan;
   }
 };
 
 std::vector<Contender<Traffic>> contenders() {
   return {contender<Traffic>(IdmClassic{.desired_speed = 22.0}), contender<Traffic>(Mobil{}),
-          contender<Traffic>(ConstantAcceleration{}, "keep_speed"), contender<Traffic>(Throws{}),
-          contender<Traffic>(GivesUp{})};
+          contender<Traffic>(ConstantAcceleration{}, "keep_speed"), contender<Traffic>(Faulty{Fault::throws}, "throws"),
+          contender<Traffic>(Faulty{Fault::no_plan}, "gives_up")};
 }
 
-/// A folder that is removed at the end.
-struct Folder {
-  std::filesystem::path path = std::filesystem::path(CAMBIUM_BUILD_DIR) / "benchmark_test";
-  Folder() {
-    std::filesystem::remove_all(path);
-    std::filesystem::create_directories(path);
-  }
-  ~Folder() { std::filesystem::remove_all(path); }
-};
-
-std::vector<ResultRow> rows_of(ResultStore& store) {
-  std::vector<ResultRow> rows;
-  store.for_each([&](ResultRow const& row) { rows.push_back(row); });
-  return rows;
-}
-
-/// Names of the files of a folder; none if it is not there.
-std::vector<std::string> files_in(std::filesystem::path const& folder) {
-  std::vector<std::string> names;
-  std::error_code none;
-  for (auto const& entry : std::filesystem::directory_iterator(folder, none))
-    names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-/// Does to a database what only its files allow.
-void execute(std::filesystem::path const& file, char const* sql) {
-  sqlite3* db = nullptr;
-  REQUIRE(sqlite3_open(file.c_str(), &db) == SQLITE_OK);
-  REQUIRE(sqlite3_exec(db, sql, nullptr, nullptr, nullptr) == SQLITE_OK);
-  sqlite3_close(db);
-}
-
-/// The first value that a query of a database gives.
-std::string text_in(std::filesystem::path const& file, char const* sql) {
+/// Does to a database what only its files allow. The first value that it gives.
+std::string execute(std::filesystem::path const& file, char const* sql) {
   sqlite3* db = nullptr;
   std::string text;
   REQUIRE(sqlite3_open(file.c_str(), &db) == SQLITE_OK);
@@ -144,22 +74,13 @@ std::string text_in(std::filesystem::path const& file, char const* sql) {
   return text;
 }
 
-/// The rows but for their times, as text.
-std::string results_of(ResultStore& store) {
-  std::string text;
-  for (auto const& row : rows_of(store))
-    text += row.key.behavior + " " + std::to_string(row.key.scenario) + " " + std::to_string(row.seed) + " " +
-            to_string(row.result) + "\n";
-  return text;
-}
-
 }  // namespace
 
 TEST_CASE("results do not depend on threads, shards or interruptions") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
   auto const set = support::merging_set<Traffic>(12);
-  ResultStore one(folder.path / "one.db"), four(folder.path / "four.db"), first(folder.path / "first.db"),
-      second(folder.path / "second.db");
+  ResultStore one(folder.path() / "one.db"), four(folder.path() / "four.db"), first(folder.path() / "first.db"),
+      second(folder.path() / "second.db");
   CHECK(run_benchmark(set, contenders(), one, {.executor = on_threads(1)}) == 60);
   CHECK(run_benchmark(set, contenders(), four, {.executor = on_threads(4)}) == 60);
   CHECK(results_of(one) == results_of(four));
@@ -174,28 +95,31 @@ TEST_CASE("results do not depend on threads, shards or interruptions") {
   CHECK(run_benchmark(set, contenders(), second, {.shard = 1, .shards = 2, .again = true}) == 30);
   first.merge(second);
   CHECK(results_of(first) == results_of(four));
-  CHECK(text_in(folder.path / "first.db",
+  CHECK(execute(folder.path() / "first.db",
                 "SELECT command FROM results JOIN runs USING(run) WHERE scenario = 1 LIMIT 1") == "the second");
   CHECK(run_benchmark(set, contenders(), second) == 30);  // goes on where it was
   CHECK(results_of(second) == results_of(four));
 }
 
 TEST_CASE("in processes, a behaviour that crashes or never returns costs its own runs only") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
   auto set = support::merging_set<Traffic>(6);
   set.time_limit = 0.4;  // which also bounds the time of a job
   for (std::size_t i = 0; i < set.scenarios.size(); ++i) set.scenarios[i].seed = i + 1;
-  auto const choose = [](auto const&, auto const& scenario) { return Hostile{.seed = scenario.seed}; };
+  auto const choose = [](auto const&, auto const& scenario) {
+    return Faulty{scenario.seed % 2 == 1 ? Fault::crash : scenario.seed % 4 == 0 ? Fault::endless : Fault::none};
+  };
   auto all = contenders();
   all.push_back(contender_by<Traffic>("hostile", "", 0, choose));
-  ResultStore store(folder.path / "r.db"), peaceful(folder.path / "peaceful.db");
+  ResultStore store(folder.path() / "r.db"), peaceful(folder.path() / "peaceful.db");
   CHECK(run_benchmark(set, all, store, {.executor = on_processes(2), .plan_limit = 1e-9}) == 36);
   int crashed = 0, endless = 0, other = 0;
   for (auto const& row : rows_of(store)) {
     if (row.key.behavior != "hostile") continue;
-    crashed += row.result.error.find("died, twice: signal 11") != std::string::npos;
-    endless += row.result.error.find("in which it gave no result") != std::string::npos;
-    other += row.result.error.starts_with(plans_too_long) && row.result.steps == 1;
+    bool const died = row.result.error_kind == RunErrorKind::process_died;
+    crashed += died && row.result.error.find("died, twice: signal 11") != std::string::npos;
+    endless += died && row.result.error.find("in which it gave no result") != std::string::npos;
+    other += row.result.error_kind == RunErrorKind::plans_too_long && row.result.steps == 1;
   }
   CHECK(crashed == 3);
   CHECK(endless == 1);
@@ -211,9 +135,9 @@ TEST_CASE("in processes, a behaviour that crashes or never returns costs its own
 }
 
 TEST_CASE("results of a process that has read other scenarios are refused") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
   auto const set = support::merging_set<Traffic>(2), other = support::merging_set<Traffic>(1);
-  ResultStore store(folder.path / "r.db");
+  ResultStore store(folder.path() / "r.db");
   auto const all = contenders();
   BenchmarkOptions const options;
   auto stranger = on_threads(1);
@@ -226,10 +150,10 @@ TEST_CASE("results of a process that has read other scenarios are refused") {
 }
 
 TEST_CASE("a run that throws or fails is a result") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
   auto set = support::merging_set<Traffic>(2);
   set.scenarios[1].ego = AgentId{999};
-  ResultStore store(folder.path / "r.db");
+  ResultStore store(folder.path() / "r.db");
   CHECK(run_benchmark(set, contenders(), store) == 10);
   std::map<std::string, int> errors;
   for (auto const& row : rows_of(store)) {
@@ -237,6 +161,8 @@ TEST_CASE("a run that throws or fails is a result") {
     ++errors[row.key.behavior + ": " + row.result.error];
   }
   CHECK(errors["throws: out of ideas"] == 1);
+  auto const odd = contender<Traffic>(Faulty{Fault::throws_number}, "odd").run(set.scenarios[0], {}, false);
+  CHECK(odd.result.error == "threw what is no std::exception");
   CHECK(errors["idm_classic: "] == 1);
   CHECK(std::ranges::count_if(errors, [](auto const& entry) {
           return entry.first.find("agent 999, is not among its agents") != std::string::npos;
@@ -277,7 +203,21 @@ TEST_CASE("a result is what an own loop finds") {
     });
     auto world = mine.make_world();
     auto const slot = world.slot_of(scenario.ego);
-    while (!world.reached_goal(slot) && !Collision{}(world, slot) && world.time() < 59.9) REQUIRE(world.step(0.2));
+    double speeds = 0.0, hardest = 0.0, least_gap = std::numeric_limits<double>::infinity();
+    auto const look = [&] {
+      if (auto const ahead = world.observe(slot).ahead()) least_gap = std::min(least_gap, ahead->gap);
+    };
+    look();
+    while (!world.reached_goal(slot) && !Collision{}(world, slot) && world.time() < 59.9) {
+      REQUIRE(world.step(0.2));
+      look();
+      speeds += world.state(scenario.ego).speed;
+      hardest = std::max(hardest, -Acceleration{}(world, slot));
+    }
+    CHECK(run.result.least_gap == doctest::Approx(least_gap));
+    CHECK(run.result.mean_speed == doctest::Approx(speeds / static_cast<double>(run.result.steps)));
+    CHECK(run.result.hardest_braking == doctest::Approx(hardest));
+    CHECK(run.result.duration_s == world.time());
     CHECK(run.result.success == (world.reached_goal(slot) && !Collision{}(world, slot)));
     CHECK(run.result.steps == static_cast<std::int64_t>(world.frame().step));
     CHECK(run.times.decisions == run.result.steps);
@@ -305,40 +245,40 @@ TEST_CASE("who leaves the map before its goal has left its way") {
   CHECK(run.result.closed_loop_score == 0.0);
 }
 
-TEST_CASE("a store refuses what it cannot use") {
-  Folder folder;
-  CHECK_THROWS_AS(ResultStore(folder.path / "no" / "where.db"), StoreError);
-  write_file(folder.path / "text.db",
-             "this is no database, but long enough to be mistaken for one: " + std::string(5000, 'x'));
-  CHECK_THROWS_AS(ResultStore(folder.path / "text.db"), StoreError);
-  ResultStore store(folder.path / "good.db");
-  auto twice = contenders();
-  twice.push_back(twice[0]);
-  CHECK_THROWS_AS(run_benchmark(support::merging_set<Traffic>(1), twice, store), ParameterError);
-  auto still = support::merging_set<Traffic>(1);
-  still.time_step = 0.0;
-  CHECK_THROWS_AS(run_benchmark(still, contenders(), store), ParameterError);
+TEST_CASE("a store refuses files that are no databases of results, and leaves them as they are") {
+  browser::TemporaryFolder const folder;
+  CHECK_THROWS_AS(ResultStore(folder.path() / "no" / "where.db"), StoreError);
+  CHECK_THROWS_AS(ResultStore::existing(folder.path() / "missing.db"), StoreError);
+  CHECK(files_in(folder.path()).empty());
+  auto const refused = [&](std::filesystem::path const& file, char const* words) {
+    auto const before = program::content_of(file);
+    CHECK_THROWS_WITH_AS(ResultStore{file}, doctest::Contains(words), StoreError);
+    CHECK_THROWS_WITH_AS(ResultStore::existing(file), doctest::Contains("is no database of results"), StoreError);
+    CHECK(program::content_of(file) == before);
+  };
+  write_file(folder.path() / "text.db", "this is no database, but may be mistaken for one: " + std::string(5000, 'x'));
+  refused(folder.path() / "text.db", "text.db");
+  execute(folder.path() / "people.db", "CREATE TABLE people(name TEXT)");
+  refused(folder.path() / "people.db", "holds tables of another program");
+  execute(folder.path() / "points.db", "CREATE TABLE results(points INTEGER)");
+  refused(folder.path() / "points.db", "holds tables of another program");
 }
 
-TEST_CASE("a database of another program stays as it is") {
-  Folder folder;
-  for (char const* tables : {"CREATE TABLE people(name TEXT)", "CREATE TABLE results(points INTEGER)"}) {
-    CAPTURE(tables);
-    auto const file = folder.path / "foreign.db";
-    std::filesystem::remove(file);
-    execute(file, tables);
-    CHECK_THROWS_WITH_AS(ResultStore{file}, doctest::Contains("holds tables of another program"), StoreError);
-    CHECK_THROWS_WITH_AS(static_cast<void>(ResultStore::existing(file)), doctest::Contains("is no database of results"),
-                         StoreError);
-    CHECK(text_in(file, "SELECT count(*) FROM sqlite_master") == "1");
-    CHECK(text_in(file, "PRAGMA journal_mode") == "delete");
-  }
+TEST_CASE("a benchmark refuses contenders that are there twice, and steps without length") {
+  browser::TemporaryFolder const folder;
+  ResultStore store(folder.path() / "good.db");
+  auto set = support::merging_set<Traffic>(1);
+  auto twice = contenders();
+  twice.push_back(twice[0]);
+  CHECK_THROWS_AS(run_benchmark(set, twice, store), ParameterError);
+  set.time_step = 0.0;
+  CHECK_THROWS_AS(run_benchmark(set, contenders(), store), ParameterError);
 }
 
 TEST_CASE("a database that may only be read is read") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
   auto const set = support::merging_set<Traffic>(2);
-  auto const file = folder.path / "a #100%?.db";
+  auto const file = folder.path() / "a #100%?.db";
   std::string expected;
   {
     ResultStore store(file);
@@ -346,7 +286,7 @@ TEST_CASE("a database that may only be read is read") {
     expected = results_of(store);
   }
   std::filesystem::permissions(file, std::filesystem::perms(0444));
-  std::filesystem::permissions(folder.path, std::filesystem::perms(0555));
+  std::filesystem::permissions(folder.path(), std::filesystem::perms(0555));
   auto const user = geteuid();
   if (user == 0) REQUIRE(seteuid(65534) == 0);  // root may write everywhere
   bool const is_reachable = faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) == 0;
@@ -359,7 +299,7 @@ TEST_CASE("a database that may only be read is read") {
     refusal = problem.what();
   }
   if (user == 0) REQUIRE(seteuid(0) == 0);
-  std::filesystem::permissions(folder.path, std::filesystem::perms(0755));
+  std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
   if (!is_reachable) {
     CHECK(refusal.find("unable to open database file") != std::string::npos);
     return support::skip("the build is in a folder that only root may enter");
@@ -369,12 +309,15 @@ TEST_CASE("a database that may only be read is read") {
 }
 
 TEST_CASE("the replay of a failure goes when it is a failure no more") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
   auto const set = support::merging_set<Traffic>(1);
   bool throws = true;
-  auto const choose = [&](auto const&, auto const&) { return Moody{throws}; };
-  ResultStore store(folder.path / "r.db");
-  BenchmarkOptions options{.replays = Replays::failures, .replay_folder = folder.path / "replays"};
+  auto const choose = [&](auto const&, auto const&) -> OneOf<IdmClassic, Faulty> {
+    if (throws) return Faulty{Fault::throws};
+    return IdmClassic{.desired_speed = 22.0};
+  };
+  ResultStore store(folder.path() / "r.db");
+  BenchmarkOptions options{.replays = Replays::failures, .replay_folder = folder.path() / "replays"};
   std::vector const moody{contender_by<Traffic>("moody", "", 0, choose)};
   run_benchmark(set, moody, store, options);
   CHECK(files_in(options.replay_folder).size() == 1);
@@ -386,12 +329,12 @@ TEST_CASE("the replay of a failure goes when it is a failure no more") {
 }
 
 TEST_CASE("failures leave replays, up to a number of each contender") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
   auto const set = support::merging_set<Traffic>(4);
-  ResultStore store(folder.path / "r.db");
+  ResultStore store(folder.path() / "r.db");
   BenchmarkOptions options{.executor = on_threads(2),
                            .replays = Replays::failures,
-                           .replay_folder = folder.path / "replays",
+                           .replay_folder = folder.path() / "replays",
                            .most_replays = 3,
                            .warn = [](auto const& sentence) { FAIL_CHECK(sentence); }};
   run_benchmark(set, contenders(), store, options);
@@ -415,24 +358,24 @@ TEST_CASE("failures leave replays, up to a number of each contender") {
 
   options.replays = Replays::all;
   options.again = true;
-  options.replay_folder = folder.path / "all";
+  options.replay_folder = folder.path() / "all";
   run_benchmark(set, contenders(), store, options);
   CHECK(files_in(options.replay_folder).size() == 20);
   options.replays = Replays::none;
-  options.replay_folder = folder.path / "no";
+  options.replay_folder = folder.path() / "no";
   run_benchmark(set, contenders(), store, options);
   CHECK_FALSE(std::filesystem::exists(options.replay_folder));
 }
 
 TEST_CASE("replays that cannot be written are reported once, and the results are there") {
-  Folder folder;
-  write_file(folder.path / "replays", "a file in the way");
+  browser::TemporaryFolder const folder;
+  write_file(folder.path() / "replays", "a file in the way");
   std::vector<std::string> warnings;
-  ResultStore store(folder.path / "r.db");
+  ResultStore store(folder.path() / "r.db");
   run_benchmark(support::merging_set<Traffic>(3), contenders(), store,
-                {.replays = Replays::all, .replay_folder = folder.path / "replays", .warn = [&](auto const& sentence) {
-                   warnings.push_back(sentence);
-                 }});
+                {.replays = Replays::all,
+                 .replay_folder = folder.path() / "replays",
+                 .warn = [&](auto const& sentence) { warnings.push_back(sentence); }});
   CHECK(rows_of(store).size() == 15);
   REQUIRE(warnings.size() == 1);
   CHECK(warnings.front().find("a replay or a snapshot is missing, and perhaps others: ") == 0);
@@ -446,10 +389,11 @@ TEST_CASE("a run whose plans take too long together ends with an error") {
   CHECK(slow.result.steps == 1);
   CHECK_FALSE(slow.result.success);
   CHECK(slow.result.error == "its plans took longer than 1e-12 s together");
+  CHECK(slow.result.error_kind == RunErrorKind::plans_too_long);
   CHECK(idm.run(set.scenarios[0], {.plan_limit = 1e6}, false).result.error == "");
 
-  Folder folder;
-  ResultStore store(folder.path / "r.db");
+  browser::TemporaryFolder const folder;
+  ResultStore store(folder.path() / "r.db");
   CHECK(run_benchmark(set, std::vector{idm}, store, {.plan_limit = 1e-12}) == 1);
   CHECK(run_benchmark(set, std::vector{idm}, store) == 1);  // a slow machine is no verdict for good
   CHECK(run_benchmark(set, std::vector{idm}, store) == 0);
@@ -457,14 +401,15 @@ TEST_CASE("a run whose plans take too long together ends with an error") {
 }
 
 TEST_CASE("an error names the agent that failed, and a failure of others is only counted") {
-  using Mixed = World<BehaviorSet<IdmClassic, GivesUp>, InterpolateExecution, SingleTrack>;
+  using Mixed = World<BehaviorSet<IdmClassic, Faulty>, InterpolateExecution, SingleTrack>;
+  Faulty const gives_up{Fault::no_plan};
   auto const plain = support::merging_set<Traffic>(1).scenarios[0];
   REQUIRE(plain.agents.size() >= 3);
   std::vector<AgentId> others;
   for (auto const& spec : plain.agents)
     if (*spec.id != plain.ego) others.push_back(*spec.id);
   auto scenario = with_behaviors<Mixed>(plain, [&](auto const& spec) -> Mixed::Behavior {
-    if (*spec.id == others.front()) return GivesUp{};
+    if (*spec.id == others.front()) return gives_up;
     return std::get<IdmClassic>(spec.behavior.given());
   });
   auto const counted = contender<Mixed>(IdmClassic{.desired_speed = 22.0}).run(scenario, {}, false).result;
@@ -472,12 +417,12 @@ TEST_CASE("an error names the agent that failed, and a failure of others is only
   CHECK(counted.others_failed == 1);
   CHECK(counted.steps > 1);
 
-  auto const both = contender<Mixed>(GivesUp{}, "gives_up").run(scenario, {}, false).result;
+  auto const both = contender<Mixed>(gives_up, "gives_up").run(scenario, {}, false).result;
   CHECK(both.error.find("agent " + to_string(plain.ego) + " (the ego)") == 0);
   CHECK(both.error.find("the behaviour found no plan") != std::string::npos);
 
   scenario.controlled = {others.back()};
-  auto const choose = [&](auto const& spec, auto const&) { return Either{.gives_up = *spec.id == others.back()}; };
+  auto const choose = [&](auto const& spec, auto const&) { return *spec.id == others.back() ? gives_up : Faulty{}; };
   auto const controlled = contender_by<Mixed>("either", "", 0, choose).run(scenario, {}, false).result;
   CHECK(controlled.error.find("agent " + to_string(others.back()) + " (controlled)") == 0);
   CHECK(controlled.steps == 1);
@@ -502,39 +447,44 @@ TEST_CASE("agents see what their observers let them see, and a lonely ego has no
   CHECK(std::isinf(alone.least_time_to_collision));
 }
 
-TEST_CASE("what a behaviour throws is an error, whatever it is") {
-  auto const run = contender<Traffic>(ThrowsNumber{}).run(support::merging_set<Traffic>(1).scenarios[0], {}, false);
-  CHECK(run.result.error == "threw what is no std::exception");
-}
-
 TEST_CASE("a store that cannot be read says so, and merges all of another or nothing") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
   auto const set = support::merging_set<Traffic>(2);
-  ResultStore first(folder.path / "first.db"), second(folder.path / "second.db");
+  ResultStore first(folder.path() / "first.db"), second(folder.path() / "second.db");
   run_benchmark(set, contenders(), first, {.shard = 0, .shards = 2});
   run_benchmark(set, contenders(), second, {.shard = 1, .shards = 2});
   auto const before = results_of(first);
-  execute(folder.path / "second.db", "DROP TABLE times");
+  execute(folder.path() / "second.db", "DROP TABLE times");
   CHECK_THROWS_AS(first.merge(second), StoreError);
   CHECK(results_of(first) == before);
-  execute(folder.path / "first.db", "DROP TABLE results");
+  execute(folder.path() / "first.db", "DROP TABLE results");
   CHECK_THROWS_AS(static_cast<void>(first.has({.behavior = "idm"})), StoreError);
 }
 
 TEST_CASE("a database of an older version is read, and gets the columns that it lacks") {
-  Folder folder;
+  browser::TemporaryFolder const folder;
+  auto const file = folder.path() / "old.db";
   auto const set = support::merging_set<Traffic>(2);
+  std::vector const idm{contender<Traffic>(IdmClassic{.desired_speed = 22.0})};
   std::string before;
   {
-    ResultStore store(folder.path / "old.db");
-    run_benchmark(set, contenders(), store);
+    ResultStore store(file);
+    run_benchmark(set, idm, store);
     before = results_of(store);
   }
-  execute(folder.path / "old.db", "ALTER TABLE results DROP COLUMN others_failed");
-  execute(folder.path / "old.db", "ALTER TABLE sets DROP COLUMN source");
-  auto store = ResultStore::existing(folder.path / "old.db");
+  for (char const* column :
+       {"results DROP COLUMN others_failed", "results DROP COLUMN error_kind", "results DROP COLUMN hit",
+        "results DROP COLUMN post_encroachment_time", "times DROP COLUMN overruns", "sets DROP COLUMN source"})
+    execute(file, (std::string("ALTER TABLE ") + column).c_str());
+  auto store = ResultStore::existing(file);
   CHECK(results_of(store) == before);
   CHECK(store.source_of(set.hash()) == "");
-  CHECK(run_benchmark(set, contenders(), store, {.source = "--set merging"}) == 0);
+  CHECK(run_benchmark(set, idm, store, {.source = "--set merging"}) == 0);
   CHECK(store.source_of(set.hash()) == "--set merging");
+  execute(file, "UPDATE results SET error = 'its plans took longer than 3 s together' WHERE scenario = 0");
+  execute(file, "UPDATE results SET error = 'the process that ran it died, twice: signal 9' WHERE scenario = 1");
+  auto machine = ResultStore::existing(file);
+  CHECK(rows_of(machine)[0].result.error_kind == RunErrorKind::plans_too_long);
+  CHECK(rows_of(machine)[1].result.error_kind == RunErrorKind::process_died);
+  CHECK(run_benchmark(set, idm, machine) == 2);
 }

@@ -11,7 +11,7 @@
 
 namespace cambium {
 
-/// What a significant difference means.
+/// Which way a significant difference goes.
 enum class Finding { none, better, worse };
 
 /// One measure of two behaviours, on the scenarios in which both have a finite value.

@@ -44,7 +44,7 @@ void for_each_common(ResultGroup const& a, ResultGroup const& b, F const& f) {
   }
 }
 
-/// A change but for its p value and interval; `differences`: of its pairs.
+/// A change without p value and interval; `differences` receives those of its pairs.
 [[nodiscard]] inline Change change_of(GroupPair const& pair, Measure const& measure, std::vector<double>& differences) {
   Change change{.measure = &measure};
   for_each_common(*pair.before, *pair.after, [&](auto const& a, auto const& b) {
@@ -62,7 +62,7 @@ void for_each_common(ResultGroup const& a, ResultGroup const& b, F const& f) {
   return change;
 }
 
-/// The p value and the interval.
+/// Fills in the p value and the interval.
 inline void test_change(Change& change, std::vector<double> const& differences, std::size_t resamples) {
   if (!change.differs) return;
   change.difference = bootstrap_interval(differences);
@@ -76,8 +76,8 @@ inline void test_change(Change& change, std::vector<double> const& differences, 
   change.p = mcnemar_p(number(-1.0), number(1.0));
 }
 
-/// Adjusts the p values of what can be better or worse, and draws conclusions. Measures in which no pair differs are
-/// not counted: they cannot be significant, whatever the level.
+/// Adjusts the p values of measures that can be better or worse, and gives verdicts. Measures in which no pair differs
+/// are not counted: they cannot be significant, whatever the level.
 inline void judge_changes(Comparisons& comparisons) {
   std::vector<Change*> judged;
   std::vector<double> p;

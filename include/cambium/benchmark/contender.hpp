@@ -46,8 +46,8 @@ struct RunOptions {
   std::string label{};  ///< of the run, for notes: "merging, scenario 17"
 };
 
-/// What a run gives: the result, the times, and if it was recorded, the recording and, of a failure, the snapshot that
-/// the contender keeps.
+/// The outcome of a run: its result and times; if it was recorded, also the recording and, after a failure, the
+/// snapshot that the contender keeps.
 struct Run {
   RunResult result;
   RunTimes times;
@@ -56,7 +56,7 @@ struct Run {
   std::string problem{};   ///< why there is no snapshot though one was wanted
 };
 
-/// What a runner knows of a run under way, besides the world.
+/// A run in progress, apart from its world.
 struct RunPosition {
   std::string contender{};
   AgentId ego = none<AgentId>;
@@ -75,9 +75,9 @@ struct RunPosition {
   }
 };
 
-/// A run that was no success, for what keeps it (`freeze_run`): the world `before` a cycle, and `after` it, but null if
-/// that threw an exception, or if the ego collided at the start. The cycle is the one that ended the run by an error,
-/// and otherwise lies `freeze_lead` before the end, when that could still be averted.
+/// A failed run, for `freeze_run`: the worlds before and after the decisive cycle. That is the cycle that ended the run
+/// by an error; without an error, it lies `freeze_lead` before the end, when that could still be averted. `after` is
+/// null if the cycle threw an exception, or if the ego collided at the start.
 template <class World>
 struct FailedRun {
   World const& before;
@@ -108,7 +108,7 @@ namespace detail {
 
 /// How long plans of the ego took, and those of other controlled agents.
 struct PlanClock {
-  RunTimes times;
+  RunTimes times{};
   double step_ms = 0.0, sum_ms = 0.0, others_ms = 0.0;
 
   void add(double ms, bool is_ego) {
@@ -154,7 +154,7 @@ struct WithBehavior<BehaviorSet<Models...>, OneOf<Behaviors...>> {
   using type = BehaviorSet<Models..., Timed<Behaviors>...>;
 };
 
-/// The last worlds of a run, for what keeps failures.
+/// Keeps the last worlds of a run, in case it fails.
 template <class World>
 class LastWorlds {
  public:
@@ -166,7 +166,7 @@ class LastWorlds {
     if (worlds_.size() > most_ + 1) worlds_.pop_front();
   }
 
-  /// Lets `keep` write the snapshot of `run`, which has failed; `threw`: its last cycle has no result.
+  /// Calls `keep` for the snapshot of `run`, which has failed; `threw`: its last cycle has no result.
   template <class Keep>
   void freeze(Run& run, bool threw, RunPosition position, std::string const& label, std::string const& map_file,
               Keep const& keep) const {
@@ -191,7 +191,7 @@ class LastWorlds {
   std::deque<World> worlds_{};
 };
 
-/// The size of what an evaluator says.
+/// The absolute value of evaluator `E`.
 template <class E>
 struct SizeOf {
   template <class World>
@@ -247,23 +247,19 @@ class RunJudge {
   struct CollisionTime : TimeToCollision {
     CollisionTime() : TimeToCollision{std::numeric_limits<double>::infinity()} {}
   };
-  /// What a recorder says goes into a field of the result.
-  template <auto field, class Recorder>
+  /// Writes a recorder's value into a field of the result; a size is at least 0.
+  template <auto field, class Recorder, bool is_size = false>
   struct Metric {
     Recorder recorder{};
 
     void write(RunResult& result) const {
-      result.*field = static_cast<std::remove_reference_t<decltype(result.*field)>>(recorder.value());
+      auto value = recorder.value();
+      if constexpr (is_size) value = std::max(0.0, value);
+      result.*field = static_cast<std::remove_reference_t<decltype(result.*field)>>(value);
     }
   };
-  /// The same, but at least 0.
   template <auto field, class Recorder>
-  struct NonNegative : Metric<field, Recorder> {
-    void write(RunResult& result) const {
-      Metric<field, Recorder>::write(result);
-      result.*field = std::max(0.0, result.*field);
-    }
-  };
+  using NonNegative = Metric<field, Recorder, true>;
   using R = RunResult;
   using Metrics =
       std::tuple<Metric<&R::progress_m, Integral<Progress>>, NonNegative<&R::mean_speed, MeanOf<Speed>>,
@@ -283,8 +279,8 @@ class RunJudge {
   Metrics metrics_{};
 };
 
-/// Why a run cannot go on after a step with a problem: a behaviour under test, which drives `own` (the ego first), has
-/// failed. Empty if only others have.
+/// Why a run cannot go on after a step with a problem: the behaviour under test, which drives `own` (the ego first),
+/// has failed. Empty if only others have failed.
 template <class World>
 [[nodiscard]] std::string failure_of(World const& world, StepResult const& step, std::span<AgentId const> own) {
   if (step.problem == StepProblem::bad_duration) return to_string(step.problem);
@@ -299,8 +295,8 @@ template <class World>
 }
 
 /// Runs a world until its ego is at its goal, collides, leaves the road or the map, time is up, or an agent of `own`
-/// (the ego first) fails. Without a goal, the ego has succeeded when it has come to the end of its route. Calls
-/// `after_step(world)`; a text that is not empty ends the run with this error.
+/// (the ego first) fails. Without a goal, the ego succeeds at the end of its route. Calls
+/// `after_step(world, result)`, which may add an error.
 template <class World, class AfterStep>
 [[nodiscard]] RunResult run_world(World& world, std::span<AgentId const> own, RunOptions const& options,
                                   AfterStep const& after_step) {
@@ -317,8 +313,7 @@ template <class World, class AfterStep>
     if (!step) result.error = failure_of(world, step, own);
     if (result.error.empty()) result.others_failed += step.failed;
     judge.observe(world, options.time_step);
-    auto problem = after_step(world);
-    if (result.error.empty()) result.error = std::move(problem);
+    after_step(world, result);
     bool const is_away = status != AgentStatus::driving && status != AgentStatus::not_started;
     bool const done =
         has_goal ? world.reached_goal(slot)
@@ -332,9 +327,28 @@ template <class World, class AfterStep>
   return judge.finished(world);
 }
 
+/// The scenario with `choose(spec, scenario)` as the behaviour of the agents `own`, the ego first; `clock` times them.
+template <class World, class ScenarioWorld, class Choose>
+[[nodiscard]] Scenario<World> with_timed_behaviors(Scenario<ScenarioWorld> const& scenario,
+                                                   std::vector<AgentId> const& own, Choose const& choose,
+                                                   PlanClock& clock) {
+  using Behavior = typename World::Behavior;
+  return with_behaviors<World>(scenario, [&](auto const& spec) -> Behavior {
+    auto const id = spec.id.given().value_or(none<AgentId>);
+    if (std::ranges::find(own, id) == own.end())
+      return std::visit([](auto const& driver) -> Behavior { return driver; }, spec.behavior);
+    auto const timed = [&]<class B>(B const& chosen) { return Behavior(Timed<B>(chosen, &clock, id == own.front())); };
+    auto const chosen = choose(spec, scenario);
+    if constexpr (Variant<std::remove_const_t<decltype(chosen)>>)
+      return chosen.visit(timed);
+    else
+      return timed(chosen);
+  });
+}
+
 }  // namespace detail
 
-/// A contender's behaviour as its world has it: with a clock around its plans.
+/// A contender's behaviour in its world: with a clock around its plans.
 template <class Behavior>
 using ContenderBehavior = detail::Timed<Behavior>;
 
@@ -358,8 +372,7 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
   auto drive = [choose = std::move(choose), keep = std::move(keep), name](Scenario<ScenarioWorld> const& scenario,
                                                                           RunOptions const& options, bool records) {
     Run run;
-    detail::PlanClock clock;
-    clock.step_ms = 1e3 * options.time_step;
+    detail::PlanClock clock{.step_ms = 1e3 * options.time_step};
     std::optional<WorldRecorder> film;
     detail::LastWorlds<World> last(options.time_step);
     bool threw = true;
@@ -369,32 +382,21 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
         throw WorldError("scenario", "has no ego", "name the agent that the benchmark is about");
       std::vector<AgentId> own{scenario.ego};
       own.insert(own.end(), scenario.controlled.begin(), scenario.controlled.end());
-      auto const ours = with_behaviors<World>(scenario, [&](auto const& spec) -> typename World::Behavior {
-        auto const id = spec.id.given().value_or(none<AgentId>);
-        if (std::ranges::find(own, id) != own.end()) {
-          auto const timed = [&]<class B>(B const& chosen) {
-            return typename World::Behavior(ContenderBehavior<B>(chosen, &clock, id == scenario.ego));
-          };
-          if constexpr (detail::Variant<Behavior>)
-            return choose(spec, scenario).visit(timed);
-          else
-            return timed(choose(spec, scenario));
-        }
-        return std::visit([](auto const& driver) -> typename World::Behavior { return driver; }, spec.behavior);
-      });
+      auto const ours = detail::with_timed_behaviors<World>(scenario, own, choose, clock);
       auto world = ours.make_world();
       if (records) {
         film.emplace(world);
         film->show_as(scenario.ego, RecordedAgentKind::ego, "ego");
         if constexpr (keeps) last.add(world);
       }
-      run.result = detail::run_world(world, own, options, [&](World const& now) -> std::string {
+      run.result = detail::run_world(world, own, options, [&](World const& now, RunResult& result) {
         if (film) film->record(now);
         if constexpr (keeps)
           if (film) last.add(now);
         double const planned = 1e-3 * (clock.sum_ms + clock.others_ms);
-        if (!(planned > options.plan_limit)) return {};
-        return plans_too_long + detail::rounded_text(options.plan_limit) + " s together";
+        if (!result.error.empty() || !(planned > options.plan_limit)) return;
+        result.error_kind = RunErrorKind::plans_too_long;
+        result.error = "its plans took longer than " + detail::rounded_text(options.plan_limit) + " s together";
       });
       threw = false;
     } catch (std::exception const& problem) {

@@ -13,7 +13,7 @@
 
 namespace cambium {
 
-/// What a job of a benchmark gives: a contender's run of a scenario.
+/// The outcome of a benchmark's job: a contender's run of a scenario.
 struct JobOutcome {
   RunResult result{};
   RunTimes times{};
@@ -25,12 +25,11 @@ struct JobOutcome {
   static constexpr char const* name = "outcome";
   static constexpr auto parameters() {
     using P = JobOutcome;
-    return parameter_list(parameter("result", &P::result, "what came of the run"),
-                          parameter("times", &P::times, "how long its plans took"),
-                          parameter("replay", &P::replay, "page for browsers"),
-                          parameter("snapshot", &P::snapshot, "as in Run"),
-                          parameter("problem", &P::problem, "why one of them is missing"),
-                          parameter("setup", &P::setup, "-", Range{0, 1.9e19}, "hash of set and contender"));
+    return parameter_list(
+        parameter("result", &P::result, "of the run"), parameter("times", &P::times, "how long its plans took"),
+        parameter("replay", &P::replay, "page for browsers"), parameter("snapshot", &P::snapshot, "as in Run"),
+        parameter("problem", &P::problem, "why one of them is missing"),
+        parameter("setup", &P::setup, "-", Range{0, 1.9e19}, "hash of set and contender"));
   }
 };
 
@@ -41,9 +40,9 @@ struct Executor {
   using Take = std::function<void(std::size_t job, JobOutcome outcome)>;
 
   /// Calls `run(job)` for each of `jobs`, in any order and at the same time, and `take(job, outcome)` for each outcome,
-  /// one call at a time. What these throw ends it. Where jobs run in other processes, one that takes longer than
-  /// `job_limit` [s] is ended, and that is its error. In a worker, it runs the jobs that the process with the store
-  /// gives, until that has no more: `jobs` do not count, and `take` is not called.
+  /// one call at a time. An exception from either ends it. Where jobs run in other processes, one that takes longer
+  /// than `job_limit` [s] is ended, and that is its error. In a worker, it runs the jobs that the process with the
+  /// store hands out, until none are left: `jobs` is ignored, and `take` is not called.
   std::function<void(std::vector<std::size_t> const& jobs, Run const& run, Take const& take, double job_limit)>
       execute{};
   bool is_worker = false;  ///< works for another process, which has the store

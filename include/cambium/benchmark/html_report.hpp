@@ -8,7 +8,7 @@
 
 namespace cambium {
 
-/// What an HTML report says beside its tables.
+/// Title of an HTML report, and where it finds replays.
 struct HtmlReportOptions {
   std::string title = "Benchmark";
   std::filesystem::path replays = "replays";  ///< folder of replays; links to it are relative to the page

@@ -27,7 +27,7 @@ namespace cambium {
 
 namespace detail {
 
-/// `text` with what is no letter, digit, dot or dash as _.
+/// `text` with all characters but letters, digits, dots and dashes replaced by _.
 [[nodiscard]] inline std::string file_word(std::string text) {
   for (char& c : text) {
     bool const is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
@@ -45,7 +45,7 @@ namespace detail {
   return file_word(set) + "_" + file_word(behavior) + "_" + digits;
 }
 
-/// A cell: an interval in brackets and what follows is set smaller.
+/// A cell; an interval in brackets is set smaller.
 [[nodiscard]] inline std::string html_cell(std::string const& cell) {
   auto const at = cell.find(" (");
   std::string const kind = cell == "better" ? " class=\"better\"" : cell == "WORSE" ? " class=\"worse\"" : "";
@@ -111,8 +111,7 @@ namespace detail {
       "<h3>Distributions</h3><p class=\"note\">Box: quartiles and median; line: 5 to 95 %; dots: runs, at most 200, "
       "the "
       "extremes among them. \xE2\x88\x9E: runs without a value.</p><div class=\"plots\">\n";
-  for (std::size_t m = 0; m < measures().size(); ++m) {
-    auto const& measure = measures()[m];
+  for (auto const& measure : measures()) {
     if (measure.is_share || measure.key == "steps" || measure.key == "decisions") continue;
     std::vector<BoxPlotRow> rows;
     double least = 0.0, most = 0.0;
@@ -139,44 +138,48 @@ namespace detail {
 
 /// The data of the list of runs as JSON, safe inside a script element.
 [[nodiscard]] inline std::string list_data(Report const& report, HtmlReportOptions const& options) {
+  auto const add = [](std::string& list, std::string const& item, char const* separator = ",") {
+    list += (list.empty() ? "" : separator) + item;
+  };
+  std::string names, outcomes, groups, rows, errors, seeds, hits, made, frozen;
   std::vector<std::size_t> columns;
   for (char const* key :
        {"duration_s", "mean_speed", "least_gap", "least_time_to_collision", "post_encroachment_time", "hardest_braking",
-        "largest_jerk", "rss_compliance", "closed_loop_score", "mean_ms", "longest_ms"})
-    for (std::size_t m = 0; m < measures().size(); ++m)
-      if (measures()[m].key == key) columns.push_back(m);
-  std::string names, groups, rows, errors, seeds, hits, made, frozen;
-  for (auto const m : columns) names += (names.empty() ? "" : ",") + json_string(titled(measures()[m]));
+        "largest_jerk", "rss_compliance", "closed_loop_score", "mean_ms", "longest_ms"}) {
+    columns.push_back(measure_index(key));
+    add(names, json_string(titled(measures()[columns.back()])));
+  }
+  for (char const* outcome : run_outcomes) add(outcomes, json_string(outcome));  // their colours are --o0 to --o5
   std::size_t index = 0;
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
     auto const& group = report.groups[g];
-    groups += (g == 0 ? "{\"set\":" : ",\n{\"set\":") + json_string(group.set_label) +
-              ",\"title\":" + json_string(group.set) + ",\"source\":" + json_string(group.source) +
-              ",\"command\":" + json_string(group.command.empty() ? "examples/run benchmark" : group.command) +
-              ",\"label\":" + json_string(group.label) + ",\"behavior\":" + json_string(group.behavior) +
-              ",\"hash\":\"" + std::to_string(group.set_hash) + "\",\"file\":" +
-              json_string(replay_prefix(group.set, group.behavior, group.set_hash, group.parameters_hash)) + "}";
+    add(groups,
+        "{\"set\":" + json_string(group.set_label) + ",\"title\":" + json_string(group.set) +
+            ",\"source\":" + json_string(group.source) +
+            ",\"command\":" + json_string(group.command.empty() ? "examples/run benchmark" : group.command) +
+            ",\"label\":" + json_string(group.label) + ",\"behavior\":" + json_string(group.behavior) + ",\"hash\":\"" +
+            std::to_string(group.set_hash) + "\",\"file\":" +
+            json_string(replay_prefix(group.set, group.behavior, group.set_hash, group.parameters_hash)) + "}",
+        ",\n");
     for (auto const& row : group.rows) {
-      rows += (index == 0 ? "[" : ",\n[") + std::to_string(g) + "," + std::to_string(row.scenario) + "," +
-              std::to_string(outcome_of(row.result));
-      for (auto const m : columns) rows += "," + short_number(measures()[m].value(row));
-      rows += "]";
+      auto numbers =
+          "[" + std::to_string(g) + "," + std::to_string(row.scenario) + "," + std::to_string(outcome_of(row.result));
+      for (auto const m : columns) numbers += "," + short_number(measures()[m].value(row));
+      add(rows, numbers + "]", ",\n");
       auto const key = "\"" + std::to_string(index) + "\":";
-      if (!row.result.error.empty()) errors += (errors.empty() ? "" : ",") + key + json_string(row.result.error);
-      if (is_valid(row.result.hit)) hits += (hits.empty() ? "" : ",") + key + "\"" + to_string(row.result.hit) + "\"";
-      seeds += (index == 0 ? "\"" : ",\"") + std::to_string(row.seed) + "\"";
+      if (!row.result.error.empty()) add(errors, key + json_string(row.result.error));
+      if (is_valid(row.result.hit)) add(hits, key + "\"" + to_string(row.result.hit) + "\"");
+      add(seeds, "\"" + std::to_string(row.seed) + "\"");
       std::error_code ignored;
       auto file = options.page_folder / options.replays /
                   replay_file_name(group.set, group.behavior, group.set_hash, group.parameters_hash, row.scenario);
       for (auto* const list : {&made, &frozen}) {
-        if (std::filesystem::exists(file, ignored)) *list += (list->empty() ? "" : ",") + std::to_string(index);
+        if (std::filesystem::exists(file, ignored)) add(*list, std::to_string(index));
         file.replace_extension(".snapshot");
       }
       ++index;
     }
   }
-  std::string outcomes;  // their colours are --o0 to --o5
-  for (char const* outcome : run_outcomes) outcomes += (outcomes.empty() ? "" : ",") + json_string(outcome);
   return "{\"replays\":" + json_string(options.replays.generic_string()) +
          ",\"folder\":" + json_string((options.page_folder / options.replays).lexically_normal().generic_string()) +
          ",\"columns\":[" + names + "],\"outcomes\":[" + outcomes + "],\n\"groups\":[" + groups + "],\n\"rows\":[" +

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -15,15 +16,6 @@ namespace cambium {
 
 namespace detail {
 
-[[nodiscard]] inline Better better_of(std::string_view key) {
-  for (char const* more : {"success", "rss_compliance", "closed_loop_score"})
-    if (key == more) return Better::more;
-  for (char const* less :
-       {"collision", "at_fault", "off_road", "off_route", "error", "hard_brakings", "others_collided"})
-    if (key == less) return Better::less;
-  return Better::neither;
-}
-
 /// "least_gap" as "least gap"; a unit at the end ("run_s") is left out.
 [[nodiscard]] inline std::string name_of_measure(std::string key, std::string const& unit) {
   for (auto const& [field, name] : {std::pair{"mean_ms", "mean planning time"},
@@ -37,6 +29,7 @@ namespace detail {
 
 template <class Struct>
 void add_measures(std::vector<Measure>& list, Struct ResultGroup::Row::*part) {
+  constexpr bool is_time = std::is_same_v<Struct, RunTimes>;
   for_each_parameter<Struct>([&](auto const& entry) {
     using Field = std::remove_cvref_t<decltype(std::declval<Struct&>().*entry.field)>;
     constexpr bool is_text = std::is_same_v<Field, std::string>, is_share = is_text || std::is_same_v<Field, bool>;
@@ -45,10 +38,13 @@ void add_measures(std::vector<Measure>& list, Struct ResultGroup::Row::*part) {
       if (measure.unit == "-") measure.unit.clear();
       measure.name = name_of_measure(measure.key, measure.unit);
       measure.is_share = is_share;
-      measure.better = better_of(measure.key);
+      if constexpr (is_time)
+        measure.is_time = true;
+      else
+        measure.better = Struct::better(measure.key);
       measure.value = [part, field = entry.field,
-                       needs_whole_run = !is_share && std::is_same_v<Struct, RunResult> &&
-                                         measure.key != "closed_loop_score"](ResultGroup::Row const& row) {
+                       needs_whole_run =
+                           !is_share && !is_time && measure.key != "closed_loop_score"](ResultGroup::Row const& row) {
         if (needs_whole_run && !row.result.error.empty()) return std::numeric_limits<double>::quiet_NaN();
         if constexpr (is_text)
           return (row.*part.*field).empty() ? 0.0 : 1.0;
@@ -70,6 +66,10 @@ CAMBIUM_COLD std::vector<Measure> const& measures() {
     return list;
   }();
   return all;
+}
+
+CAMBIUM_COLD std::size_t measure_index(std::string_view key) {
+  return static_cast<std::size_t>(std::ranges::find(measures(), key, &Measure::key) - measures().begin());
 }
 
 }  // namespace cambium

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
-#include <string>
 #include <tuple>
 #include <vector>
 

@@ -9,6 +9,7 @@
 #include "cambium/benchmark/measure.hpp"
 #include "cambium/benchmark/result_group.hpp"
 #include "cambium/benchmark/statistics.hpp"
+#include "cambium/benchmark/table.hpp"
 
 namespace cambium {
 
@@ -17,10 +18,10 @@ struct Estimate {
   std::size_t count = 0;  ///< scenarios with a finite value; only these count
   double value = std::numeric_limits<double>::quiet_NaN();
   Interval interval{};
-  double least = std::numeric_limits<double>::infinity(), most = -std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();  ///< the largest value
 };
 
-/// What is reported of a benchmark.
+/// A report on a benchmark.
 struct Report {
   std::vector<ResultGroup> groups{};
   std::vector<std::vector<Estimate>> estimates{};  ///< by group and measure, as in `measures()`
@@ -31,15 +32,6 @@ struct Report {
 /// Estimates all measures of all groups, and compares each two behaviours of a set. The same on any number of threads.
 /// O(rows × measures × resamples of a bootstrap).
 [[nodiscard]] Report make_report(std::vector<ResultGroup> groups, double level = 0.05);
-
-/// A table of text. The first column names the rows.
-struct Table {
-  std::string set{};  ///< what it is about; empty of comparisons
-  std::string title{};
-  std::vector<std::string> head{};
-  std::vector<std::vector<std::string>> rows{};
-  std::string note{};
-};
 
 /// The tables of a report: an overview; for each set the outcomes, the means and the planning times of each behaviour,
 /// and the differences between each two; then the comparisons. Tables of means have at most `columns` measures.
@@ -53,14 +45,8 @@ struct Table {
 /// scenario 3 with: ...".
 [[nodiscard]] std::vector<std::string> errors_of(std::vector<ResultGroup> const& groups);
 
-/// What a comparison says in one line: "significant loss: merging, mobil: success".
+/// A comparison in one line: "significant loss: merging, mobil: success".
 [[nodiscard]] std::string verdict_of(Comparisons const& comparisons);
-
-/// A table for a terminal. Control characters are escaped.
-[[nodiscard]] std::string text_of(Table const& table);
-
-/// A table for LaTeX with the package booktabs; special characters are escaped.
-[[nodiscard]] std::string latex_of(Table const& table);
 
 /// All estimates and comparisons as comma-separated values (RFC 4180), one row a measure. In rows of comparisons,
 /// `against` names the other behaviour, and `value` is the difference from it. Shares are numbers from 0 to 1.

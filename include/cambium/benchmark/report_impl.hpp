@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -15,7 +14,6 @@
 #include "cambium/benchmark/run_on_threads.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/core/markup.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -51,16 +49,11 @@ namespace detail {
 
 [[nodiscard]] inline std::string p_text(double p) { return p < 1e-4 ? "<0.0001" : fixed_text(p, p < 0.001 ? 4 : 3); }
 
-[[nodiscard]] inline bool is_time(Measure const& measure) {
-  for (char const* key : {"decisions", "mean_ms", "longest_ms", "overruns", "run_s"})
-    if (measure.key == key) return true;
-  return false;
-}
-
 /// A table of some measures of the groups of a set.
 [[nodiscard]] inline Table measure_table(Report const& report, std::vector<std::size_t> const& set,
-                                         std::vector<std::size_t> const& chosen, bool with_scenarios) {
-  Table table{.head = {"behaviour"}};
+                                         std::vector<std::size_t> const& chosen, std::string const& title) {
+  Table table{.title = title, .head = {"behaviour"}};
+  bool const with_scenarios = title == "outcomes";
   if (with_scenarios) table.head.emplace_back("scenarios");
   for (auto const m : chosen) table.head.push_back(titled(measures()[m]));
   for (auto const g : set) {
@@ -73,9 +66,10 @@ namespace detail {
   return table;
 }
 
-/// How long the behaviours of a set think.
+/// The planning times of the behaviours of a set.
 [[nodiscard]] inline Table time_table(Report const& report, std::vector<std::size_t> const& set) {
-  Table table{.head = {"behaviour", "plans", "mean time of a plan [ms]", "longest [ms]", "plans longer than a step"}};
+  Table table{.title = "planning times",
+              .head = {"behaviour", "plans", "mean time of a plan [ms]", "longest [ms]", "plans longer than a step"}};
   for (auto const g : set) {
     auto const& group = report.groups[g];
     auto const& estimates = report.estimates[g];
@@ -84,12 +78,11 @@ namespace detail {
       plans += row.times.decisions;
       overruns += row.times.overruns;
     }
-    std::string mean = "-", longest = "-";
-    for (std::size_t m = 0; m < measures().size(); ++m) {
-      if (measures()[m].key == "mean_ms") mean = cell_of(measures()[m], estimates[m], group.rows.size());
-      if (measures()[m].key == "longest_ms") longest = with_interval(estimates[m].most, {0.0, 0.0}, false, false);
-    }
-    table.rows.push_back({group.label, std::to_string(plans), mean, longest, std::to_string(overruns)});
+    auto const mean = measure_index("mean_ms");
+    table.rows.push_back({group.label, std::to_string(plans),
+                          cell_of(measures()[mean], estimates[mean], group.rows.size()),
+                          with_interval(estimates[measure_index("longest_ms")].most, {0.0, 0.0}, false, false),
+                          std::to_string(overruns)});
   }
   table.note = "On the machine and threads of the run; interval of the mean over scenarios.";
   return table;
@@ -129,7 +122,7 @@ namespace detail {
   return table;
 }
 
-/// Successes and collisions of each behaviour on each set, and how long it thinks.
+/// Successes and collisions of each behaviour on each set, and its planning time.
 [[nodiscard]] inline Table overview_of(std::vector<ResultGroup> const& groups) {
   struct Sum {
     std::size_t runs = 0, successes = 0, collisions = 0;
@@ -173,6 +166,8 @@ namespace detail {
   return table;
 }
 
+inline constexpr char const* finding_words[] = {"", "better", "worse"};
+
 [[nodiscard]] inline std::string numbers_text(std::vector<std::int64_t> const& numbers) {
   constexpr std::size_t most = 12;
   std::string text;
@@ -198,12 +193,11 @@ namespace detail {
       auto const text = with_interval(x, change.difference, measure.is_share, false);
       return text.substr(0, text.find(' '));
     };
-    table.rows.push_back({titled(measure), std::to_string(change.pairs), value(change.before), value(change.after),
-                          with_interval(change.after - change.before, change.difference, measure.is_share, true),
-                          p_text(change.p), is_judged ? p_text(change.p_adjusted) : "",
-                          change.verdict == Finding::better  ? "better"
-                          : change.verdict == Finding::worse ? "WORSE"
-                                                             : ""});
+    table.rows.push_back(
+        {titled(measure), std::to_string(change.pairs), value(change.before), value(change.after),
+         with_interval(change.after - change.before, change.difference, measure.is_share, true), p_text(change.p),
+         is_judged ? p_text(change.p_adjusted) : "",
+         change.verdict == Finding::worse ? "WORSE" : finding_words[static_cast<std::size_t>(change.verdict)]});
   }
   if (table.rows.empty())
     table.note = "No difference.";
@@ -212,74 +206,6 @@ namespace detail {
   if (!comparison.lost.empty()) table.note += " Success lost in scenarios " + numbers_text(comparison.lost) + ".";
   if (!comparison.won.empty()) table.note += " Success won in scenarios " + numbers_text(comparison.won) + ".";
   return table;
-}
-
-/// "merging: outcomes".
-[[nodiscard]] inline std::string full_title(Table const& table) {
-  return table.set.empty() ? table.title : table.set + ": " + table.title;
-}
-
-/// The words of a cell of a head, in lines of at most `width` letters where possible.
-[[nodiscard]] inline std::vector<std::string> wrapped(std::string const& text, std::size_t width) {
-  std::vector<std::string> lines(1);
-  for (std::size_t begin = 0; begin < text.size();) {
-    auto const found = text.find_first_of(" _", begin);
-    auto const end = found == text.npos ? text.size() : found + 1;
-    auto const word = text.substr(begin, end - begin);
-    bool const has_room = lines.back().size() + word.size() - word.ends_with(' ') <= width;
-    if (!has_room && !lines.back().empty()) lines.emplace_back();
-    lines.back() += word;
-    begin = end;
-  }
-  for (auto& line : lines)
-    if (line.ends_with(' ')) line.pop_back();
-  return lines;
-}
-
-/// Number of letters; bytes that continue a UTF-8 character do not count.
-[[nodiscard]] inline std::size_t letters(std::string_view text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
-}
-
-/// The head of a table in lines, each as a row.
-[[nodiscard]] inline std::vector<std::vector<std::string>> head_lines(Table const& table) {
-  std::vector<std::vector<std::string>> columns;
-  std::size_t height = 1;
-  for (std::size_t c = 0; c < table.head.size(); ++c) {
-    std::size_t width = 10;
-    for (auto const& row : table.rows) width = std::max(width, letters(row[c]));
-    columns.push_back(wrapped(table.head[c], width));
-    height = std::max(height, columns.back().size());
-  }
-  std::vector<std::vector<std::string>> lines(height, std::vector<std::string>(columns.size()));
-  for (std::size_t c = 0; c < columns.size(); ++c)
-    for (std::size_t i = 0; i < columns[c].size(); ++i) lines[height - columns[c].size() + i][c] = columns[c][i];
-  return lines;
-}
-
-[[nodiscard]] inline std::string escape_latex(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    char const c = text[i];
-    bool const after_digit = i > 0 && text[i - 1] >= '0' && text[i - 1] <= '9';
-    bool const before_digit = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
-    if (std::string_view("&%$#_{}").find(c) != std::string_view::npos)
-      out += std::string("\\") + c;
-    else if (c == '\\')
-      out += "\\textbackslash{}";
-    else if (c == '~' || c == '^')
-      out += c == '~' ? "\\textasciitilde{}" : "\\textasciicircum{}";
-    else if (c == '<' || c == '>')
-      out += c == '<' ? "$<$" : "$>$";
-    else if (c == '"')
-      out += "''";
-    else if (c == '-' && before_digit)
-      out += after_digit ? "--" : "$-$";
-    else
-      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out;
 }
 
 [[nodiscard]] inline std::string csv_line(std::vector<std::string> const& cells) {
@@ -299,10 +225,6 @@ namespace detail {
 
 [[nodiscard]] inline std::string csv_number(double value) { return std::isfinite(value) ? number_text(value) : ""; }
 
-[[nodiscard]] inline char const* text_of_better(Better better) {
-  return better == Better::more ? "more" : better == Better::less ? "less" : "";
-}
-
 [[nodiscard]] inline Estimate estimate_of(ResultGroup const& group, Measure const& measure) {
   Estimate estimate;
   std::vector<double> values;
@@ -311,9 +233,7 @@ namespace detail {
   estimate.count = values.size();
   if (values.empty()) return estimate;
   estimate.value = mean_of(values);
-  auto const [least, most] = std::minmax_element(values.begin(), values.end());
-  estimate.least = *least;
-  estimate.most = *most;
+  estimate.most = *std::max_element(values.begin(), values.end());
   estimate.interval =
       measure.is_share
           ? wilson_interval(static_cast<std::uint64_t>(std::count(values.begin(), values.end(), 1.0)), values.size())
@@ -340,7 +260,7 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
   for (std::size_t m = 0; m < measures().size(); ++m) {
     if (measures()[m].is_share)
       shares.push_back(m);
-    else if (!detail::is_time(measures()[m]) && measures()[m].key != "steps")  // the duration says that
+    else if (!measures()[m].is_time && measures()[m].key != "steps")  // the duration says that
       means.push_back(m);
   }
   auto const parts = (means.size() + columns - 1) / columns;
@@ -348,27 +268,22 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
   tables.push_back(detail::overview_of(report.groups));
   for (auto const& set : detail::groups_by_set(report.groups)) {
     auto const& name = report.groups[set.front()].set_label;
-    auto const add = [&](Table table, std::string const& title) {
+    auto const add = [&](Table table) {
       table.set = name;
-      table.title = title;
       tables.push_back(std::move(table));
     };
-    add(detail::measure_table(report, set, shares, true), "outcomes");
+    add(detail::measure_table(report, set, shares, "outcomes"));
     tables.back().note = "Shares of the scenarios; in brackets: 95 % intervals (Wilson).";
     for (std::size_t begin = 0; begin < means.size(); begin += columns) {
       auto const first = means.begin() + static_cast<std::ptrdiff_t>(begin);
       auto const last = means.begin() + static_cast<std::ptrdiff_t>(std::min(means.size(), begin + columns));
-      add(detail::measure_table(report, set, {first, last}, false), "means");
+      add(detail::measure_table(report, set, {first, last}, "means"));
     }
     tables.back().note =
         "In brackets: 95 % intervals (bootstrap, BCa); n: scenarios with a finite value, where not all.";
-    add(detail::time_table(report, set), "planning times");
+    add(detail::time_table(report, set));
     if (set.size() < 2) continue;
-    for (char const* key : {"success", "closed_loop_score"}) {
-      auto table = detail::difference_table(report, set, key);
-      auto const title = table.title;
-      add(std::move(table), title);
-    }
+    for (char const* key : {"success", "closed_loop_score"}) add(detail::difference_table(report, set, key));
   }
   for (auto const& comparisons : report.comparisons)
     for (auto const& comparison : comparisons.list) tables.push_back(detail::comparison_table(comparison));
@@ -434,81 +349,38 @@ CAMBIUM_COLD std::string verdict_of(Comparisons const& comparisons) {
   return comparisons.title + ": " + text + " (level " + detail::rounded_text(100 * comparisons.level) + " %)";
 }
 
-CAMBIUM_COLD std::string text_of(Table const& table) {
-  auto lines = detail::head_lines(table);
-  auto const head_height = lines.size();
-  for (auto const& row : table.rows) lines.push_back(row);
-  if (table.rows.empty()) lines.clear();
-  std::vector<std::size_t> widths(table.head.size(), 0);
-  for (auto& line : lines)
-    for (std::size_t c = 0; c < line.size(); ++c) {
-      line[c] = detail::printable(line[c]);
-      widths[c] = std::max(widths[c], detail::letters(line[c]));
-    }
-  std::string text = "  " + detail::printable(detail::full_title(table)) + "\n";
-  for (std::size_t l = 0; l < lines.size(); ++l) {
-    std::string row;
-    for (std::size_t c = 0; c < lines[l].size(); ++c) {
-      std::string const blanks(widths[c] - detail::letters(lines[l][c]), ' ');
-      row += (c == 0 ? "    " + lines[l][c] + blanks : "  " + blanks + lines[l][c]);
-    }
-    row.resize(row.find_last_not_of(' ') + 1);
-    text += row + "\n";
-    if (l + 1 != head_height) continue;
-    std::size_t all = 2 * (widths.size() - 1);
-    for (auto const width : widths) all += width;
-    text += "    " + std::string(all, '-') + "\n";
-  }
-  return table.note.empty() ? text : text + "    " + detail::printable(table.note) + "\n";
-}
-
-CAMBIUM_COLD std::string latex_of(Table const& table) {
-  auto const row = [](std::vector<std::string> const& cells) {
-    std::string line;
-    for (auto const& cell : cells) line += (&cell == &cells.front() ? "  " : " & ") + detail::escape_latex(cell);
-    return line + " \\\\\n";
-  };
-  std::string text = "\\begin{table}\n  \\centering\n  \\caption{" + detail::escape_latex(detail::full_title(table)) +
-                     (table.note.empty() ? "" : ". " + detail::escape_latex(table.note)) + "}\n  \\begin{tabular}{l" +
-                     std::string(table.head.size() - 1, 'r') + "}\n  \\toprule\n";
-  for (auto const& line : detail::head_lines(table)) text += row(line);
-  text += "  \\midrule\n";
-  for (auto const& line : table.rows) text += row(line);
-  return text + "  \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
-}
-
 CAMBIUM_COLD std::string csv_of(Report const& report) {
   auto text = detail::csv_line({"set", "behavior", "parameters_hash", "version", "against", "measure", "unit", "better",
                                 "scenarios", "value", "low", "high", "p", "p_adjusted", "verdict"});
-  for (std::size_t g = 0; g < report.groups.size(); ++g) {
-    auto const& group = report.groups[g];
-    for (std::size_t m = 0; m < measures().size(); ++m) {
-      auto const& measure = measures()[m];
-      auto const& estimate = report.estimates[g][m];
-      text += detail::csv_line({group.set_label, group.label, hash_text(group.parameters_hash), group.version, "",
-                                measure.key, measure.is_share ? "" : measure.unit,
-                                detail::text_of_better(measure.better), std::to_string(estimate.count),
-                                detail::csv_number(estimate.value), detail::csv_number(estimate.interval.low),
-                                detail::csv_number(estimate.interval.high), "", "", ""});
-    }
-  }
-  auto const add = [&](Comparisons const& comparisons) {
-    for (auto const& comparison : comparisons.list)
-      for (auto const& change : comparison.changes) {
-        auto const& measure = *change.measure;
-        text += detail::csv_line({comparison.set, comparison.after, "", "", comparison.before, measure.key,
-                                  measure.is_share ? "" : measure.unit, detail::text_of_better(measure.better),
-                                  std::to_string(change.pairs), detail::csv_number(change.after - change.before),
-                                  detail::csv_number(change.difference.low), detail::csv_number(change.difference.high),
-                                  detail::csv_number(change.p),
-                                  measure.better == Better::neither ? "" : detail::csv_number(change.p_adjusted),
-                                  change.verdict == Finding::better  ? "better"
-                                  : change.verdict == Finding::worse ? "worse"
-                                                                     : ""});
-      }
+  // `whose` and `verdict`: the cells before and behind the measure and its value.
+  auto const add = [&](std::vector<std::string> whose, Measure const& measure, std::size_t count, double value,
+                       Interval const& interval, std::vector<std::string> const& verdict) {
+    constexpr char const* better[] = {"", "more", "less"};
+    whose.insert(whose.end(),
+                 {measure.key, measure.is_share ? "" : measure.unit, better[static_cast<std::size_t>(measure.better)],
+                  std::to_string(count), detail::csv_number(value), detail::csv_number(interval.low),
+                  detail::csv_number(interval.high)});
+    whose.insert(whose.end(), verdict.begin(), verdict.end());
+    text += detail::csv_line(whose);
   };
-  add(report.each);
-  for (auto const& comparisons : report.comparisons) add(comparisons);
+  for (std::size_t g = 0; g < report.groups.size(); ++g)
+    for (std::size_t m = 0; m < measures().size(); ++m) {
+      auto const& group = report.groups[g];
+      auto const& estimate = report.estimates[g][m];
+      add({group.set_label, group.label, hash_text(group.parameters_hash), group.version, ""}, measures()[m],
+          estimate.count, estimate.value, estimate.interval, {"", "", ""});
+    }
+  auto const add_all = [&](Comparisons const& comparisons) {
+    for (auto const& comparison : comparisons.list)
+      for (auto const& change : comparison.changes)
+        add({comparison.set, comparison.after, "", "", comparison.before}, *change.measure, change.pairs,
+            change.after - change.before, change.difference,
+            {detail::csv_number(change.p),
+             change.measure->better == Better::neither ? "" : detail::csv_number(change.p_adjusted),
+             detail::finding_words[static_cast<std::size_t>(change.verdict)]});
+  };
+  add_all(report.each);
+  for (auto const& comparisons : report.comparisons) add_all(comparisons);
   return text;
 }
 

@@ -28,7 +28,7 @@ struct sqlite3_stmt;
 /// order and on how many threads the scenarios are run.
 namespace cambium {
 
-/// What a result belongs to.
+/// Identifies a result.
 struct ResultKey {
   std::uint64_t set_hash = 0;
   std::int64_t scenario = 0;  ///< number in the set, from 0
@@ -46,25 +46,25 @@ struct ResultRow {
   std::uint64_t seed = 0;
   RunResult result;
   RunTimes times{};
-  std::int64_t run = 0;  ///< the call of the runner that brought it; `ResultStore::add` puts the present one
+  std::int64_t run = 0;  ///< the call of the runner that brought it; `ResultStore::add` sets the current one
 };
 
-/// A database that cannot be opened, read or written, or that another program has laid out.
+/// A database cannot be opened, read or written, or has tables of another program.
 struct StoreError : Error {
   using Error::Error;
 };
 
-/// An open database of results. One object serves one thread; several processes may write to one file. What `add` has
-/// got is in the file after `commit`, and at the latest when the store is closed: a process that is killed loses only
-/// what came after the last `commit`, a machine without power perhaps more.
+/// An open database of results. One object serves one thread; several processes may write to one file. Rows that were
+/// added are in the file after `commit`, and at the latest when the store is closed: a process that is killed loses
+/// only what came after the last `commit`; a power failure may cost more.
 class ResultStore {
  public:
-  /// Opens or makes the file. Throws `StoreError` if that is impossible, or if its tables are others; then it stays as
-  /// it is.
+  /// Opens or creates the file. Throws `StoreError` if that is impossible, or if the file has tables of another
+  /// program; then it stays as it is.
   explicit ResultStore(std::filesystem::path const& file) : ResultStore(file, nullptr) {}
 
-  /// A copy in memory of a database that is there already, and stays as it is: what is added to the copy is lost.
-  /// Throws `StoreError` if the file is missing or is none. O(size of the file).
+  /// A copy in memory of an existing database. The file stays as it is; rows added to the copy are lost. Throws
+  /// `StoreError` if the file is missing or no database of results. O(size of the file).
   [[nodiscard]] static ResultStore existing(std::filesystem::path const& file);
   ResultStore(ResultStore&&) = default;
   ResultStore& operator=(ResultStore&&) = delete;
@@ -72,22 +72,22 @@ class ResultStore {
 
   [[nodiscard]] std::string const& file() const { return file_; }
 
-  /// Notes a call of the runner; rows added from now on belong to it. `started`: a text, as "2026-11-24 17:00".
+  /// Records a call of the runner; rows added from now on belong to it. `started`: a text, as "2026-11-24 17:00".
   void begin_run(std::string const& started, std::string const& command);
-  /// `source`: what names the set on the command line, "--set merging --seed 3"; empty: what was known stays.
+  /// `source`: what names the set on the command line, "--set merging --seed 3"; empty: keeps the known one.
   void add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios, std::string const& source = {});
-  /// `command`: what runs it, without the set, "examples/run benchmark --parameters FILE"; empty: what was known stays.
+  /// `command`: what runs it, without the set, "examples/run benchmark --parameters FILE"; empty: keeps the known one.
   void add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters,
                     std::string const& command = {});
 
-  /// Whether there is a result of that key. One for which the machine may be to blame does not count: of a run whose
-  /// plans took too long, or whose process died. Throws `StoreError` if the file cannot be read.
+  /// Whether there is a result of that key. An error for which the machine may be to blame (`RunErrorKind`) does not
+  /// count. Throws `StoreError` if the file cannot be read.
   [[nodiscard]] bool has(ResultKey const& key);
 
   /// Adds a row, in place of an earlier one of that key. Throws `StoreError`, for example if the disk is full.
   void add(ResultRow const& row);
 
-  /// Puts all rows so far into the file.
+  /// Writes all rows added so far to the file.
   void commit();
 
   /// Calls `f(ResultRow)` for each result, by set, behaviour, parameters, version and scenario.
@@ -124,13 +124,18 @@ class ResultStore {
 
   [[noreturn]] void fail(std::string const& what, std::string const& remedy) const;
   void execute(std::string const& sql);
-  [[nodiscard]] Statement prepare(std::string const& sql);
-  /// Whether a query has a row, which can then be read.
+  /// A statement with these values for its marks.
+  template <class... Values>
+  [[nodiscard]] Statement prepare(std::string const& sql, Values const&... values);
+  /// Advances a query to its next row; whether there is one.
   [[nodiscard]] bool has_row(sqlite3_stmt* query);
-  [[nodiscard]] std::string of_set(std::string const& column, std::uint64_t set_hash);
-  [[nodiscard]] std::string of_behavior(std::string const& column, std::string const& name, std::uint64_t hash);
-  void add_missing_column(std::string const& table, std::string const& column);
-  [[nodiscard]] std::int64_t last_run();
+  /// The text in a query's first row; empty without one.
+  template <class... Values>
+  [[nodiscard]] std::string find_text(std::string const& sql, Values const&... values);
+  /// Adds the column if the database lacks it; whether it did.
+  bool add_missing_column(std::string const& table, std::string const& column);
+  /// Adds all columns that a database of an older version lacks.
+  void add_missing_columns();
   void step(sqlite3_stmt* statement);
 
   std::string file_;

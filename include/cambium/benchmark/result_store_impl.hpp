@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -51,13 +51,16 @@ inline void bind_value(sqlite3_stmt* s, int at, std::string const& value) {
 
 inline void bind_value(sqlite3_stmt* s, int at, std::int64_t value) { sqlite3_bind_int64(s, at, value); }
 
+/// Binds the values from place `at` on; returns the next place.
+template <class... Values>
+int bind_values([[maybe_unused]] sqlite3_stmt* s, int at, Values const&... values) {
+  (bind_value(s, at++, values), ...);
+  return at;
+}
+
 inline int bind_key(sqlite3_stmt* s, ResultKey const& key) {
-  bind_value(s, 1, hash_text(key.set_hash));
-  bind_value(s, 2, key.scenario);
-  bind_value(s, 3, key.behavior);
-  bind_value(s, 4, hash_text(key.parameters_hash));
-  bind_value(s, 5, key.version);
-  return 6;
+  return bind_values(s, 1, hash_text(key.set_hash), key.scenario, key.behavior, hash_text(key.parameters_hash),
+                     key.version);
 }
 
 [[nodiscard]] inline std::string text(sqlite3_stmt* s, int at) {
@@ -74,14 +77,19 @@ inline int bind_key(sqlite3_stmt* s, ResultKey const& key) {
   return text;
 }
 
+/// "least_gap REAL".
+[[nodiscard]] inline std::string column_of(FieldInfo const& field) {
+  auto const& held = field.type();
+  return std::string(field.name) + (held.kind == TypeInfo::Kind::text ? " TEXT"
+                                    : held.is_real()                  ? " REAL"
+                                                                      : " INTEGER");
+}
+
 /// The columns of a struct, one a field.
 [[nodiscard]] inline std::string columns(TypeInfo const& type, bool with_types) {
   std::string text;
-  for (auto const& field : type.fields()) {
-    text += (text.empty() ? "" : ", ") + std::string(field.name);
-    auto const& held = field.type();
-    if (with_types) text += held.kind == TypeInfo::Kind::text ? " TEXT" : held.is_real() ? " REAL" : " INTEGER";
-  }
+  for (auto const& field : type.fields())
+    text += (text.empty() ? "" : ", ") + (with_types ? column_of(field) : std::string(field.name));
   return text;
 }
 
@@ -101,19 +109,20 @@ inline void bind_fields(sqlite3_stmt* s, int& at, TypeInfo const& type, void con
   }
 }
 
+/// Reads a struct's fields. Where a row has no value, the field keeps its own.
 inline void read_fields(sqlite3_stmt* s, int& at, TypeInfo const& type, void* object) {
   for (auto const& field : type.fields()) {
+    int const column = at++;
+    if (sqlite3_column_type(s, column) == SQLITE_NULL) continue;
     auto const& held = field.type();
     if (held.kind == TypeInfo::Kind::text) {
-      *static_cast<std::string*>(field.in(object)) = text(s, at);
-    } else {
-      auto value = PlainValue::highest(held);  // of an id: none
-      bool const is_none = value.is_id() && sqlite3_column_type(s, at) == SQLITE_NULL;
-      value.number = sqlite3_column_double(s, at);
-      if (!is_none) value.bits = static_cast<std::uint64_t>(sqlite3_column_int64(s, at));
-      value.store(field.in(object), held);
+      *static_cast<std::string*>(field.in(object)) = text(s, column);
+      continue;
     }
-    ++at;
+    auto value = PlainValue::highest(held);
+    value.number = sqlite3_column_double(s, column);
+    value.bits = static_cast<std::uint64_t>(sqlite3_column_int64(s, column));
+    value.store(field.in(object), held);
   }
 }
 
@@ -147,37 +156,27 @@ CAMBIUM_COLD ResultStore::~ResultStore() {
 }
 
 CAMBIUM_COLD void ResultStore::begin_run(std::string const& started, std::string const& command) {
-  auto statement = prepare("INSERT INTO runs(started, command) VALUES(?, ?)");
-  detail::sql::bind_value(statement.get(), 1, started);
-  detail::sql::bind_value(statement.get(), 2, command);
-  step(statement.get());
+  step(prepare("INSERT INTO runs(started, command) VALUES(?, ?)", started, command).get());
   run_ = sqlite3_last_insert_rowid(db_.get());
 }
 
 CAMBIUM_COLD void ResultStore::add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios,
                                        std::string const& source) {
-  auto statement = prepare("INSERT OR REPLACE INTO sets(set_hash, title, scenarios, source) VALUES(?, ?, ?, ?)");
-  detail::sql::bind_value(statement.get(), 1, hash_text(hash));
-  detail::sql::bind_value(statement.get(), 2, title);
-  detail::sql::bind_value(statement.get(), 3, static_cast<std::int64_t>(scenarios));
-  detail::sql::bind_value(statement.get(), 4, source.empty() ? source_of(hash) : source);
-  step(statement.get());
+  step(prepare("INSERT OR REPLACE INTO sets(set_hash, title, scenarios, source) VALUES(?, ?, ?, ?)", hash_text(hash),
+               title, static_cast<std::int64_t>(scenarios), source.empty() ? source_of(hash) : source)
+           .get());
 }
 
 CAMBIUM_COLD void ResultStore::add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters,
                                             std::string const& command) {
-  auto statement =
-      prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, command) VALUES(?, ?, ?, ?)");
-  detail::sql::bind_value(statement.get(), 1, name);
-  detail::sql::bind_value(statement.get(), 2, hash_text(hash));
-  detail::sql::bind_value(statement.get(), 3, parameters);
-  detail::sql::bind_value(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
-  step(statement.get());
+  step(prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, command) VALUES(?, ?, ?, ?)",
+               name, hash_text(hash), parameters, command.empty() ? command_of(name, hash) : command)
+           .get());
 }
 
 CAMBIUM_COLD bool ResultStore::has(ResultKey const& key) {
   detail::sql::bind_key(has_.get(), key);
-  bool const found = has_row(has_.get()) && !may_be_the_machine(detail::sql::text(has_.get(), 0));
+  bool const found = has_row(has_.get()) && sqlite3_column_int(has_.get(), 0) == static_cast<int>(RunErrorKind::run);
   sqlite3_reset(has_.get());
   return found;
 }
@@ -186,8 +185,7 @@ CAMBIUM_COLD void ResultStore::add(ResultRow const& row) {
   if (!in_transaction_) execute("BEGIN");
   in_transaction_ = true;
   int at = detail::sql::bind_key(add_result_.get(), row.key);
-  detail::sql::bind_value(add_result_.get(), at++, std::to_string(row.seed));
-  detail::sql::bind_value(add_result_.get(), at++, run_);
+  at = detail::sql::bind_values(add_result_.get(), at, std::to_string(row.seed), run_);
   detail::sql::bind_fields(add_result_.get(), at, type_info<RunResult>(), &row.result);
   step(add_result_.get());
   at = detail::sql::bind_key(add_times_.get(), row.key);
@@ -221,33 +219,35 @@ CAMBIUM_COLD void ResultStore::for_each(std::function<void(ResultRow const&)> co
 }
 
 CAMBIUM_COLD std::string ResultStore::parameters_of(std::string const& name, std::uint64_t hash) {
-  return of_behavior("parameters", name, hash);
+  return find_text("SELECT parameters FROM behaviors WHERE behavior=? AND parameters_hash=?", name, hash_text(hash));
 }
 
 CAMBIUM_COLD std::string ResultStore::command_of(std::string const& name, std::uint64_t hash) {
-  return of_behavior("command", name, hash);
+  return find_text("SELECT command FROM behaviors WHERE behavior=? AND parameters_hash=?", name, hash_text(hash));
 }
 
 CAMBIUM_COLD std::string ResultStore::title_of(std::uint64_t set_hash) {
-  auto const title = of_set("title", set_hash);
+  auto const title = find_text("SELECT title FROM sets WHERE set_hash=?", hash_text(set_hash));
   return title.empty() ? hash_text(set_hash) : title;
 }
 
-CAMBIUM_COLD std::string ResultStore::source_of(std::uint64_t set_hash) { return of_set("source", set_hash); }
+CAMBIUM_COLD std::string ResultStore::source_of(std::uint64_t set_hash) {
+  return find_text("SELECT source FROM sets WHERE set_hash=?", hash_text(set_hash));
+}
 
 CAMBIUM_COLD void ResultStore::merge(ResultStore& other) {
   commit();
   execute("BEGIN IMMEDIATE");
   auto const own_run = run_;
   try {
-    auto const offset = last_run();
+    auto last_run = prepare("SELECT COALESCE(MAX(run), 0) FROM runs");
+    auto const offset = has_row(last_run.get()) ? sqlite3_column_int64(last_run.get(), 0) : 0;
     auto runs = other.prepare("SELECT run, started, command FROM runs");
-    auto add_run = prepare("INSERT INTO runs(run, started, command) VALUES(?, ?, ?)");
-    while (other.has_row(runs.get())) {
-      detail::sql::bind_value(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
-      for (int const at : {1, 2}) detail::sql::bind_value(add_run.get(), at + 1, detail::sql::text(runs.get(), at));
-      step(add_run.get());
-    }
+    while (other.has_row(runs.get()))
+      step(prepare("INSERT INTO runs(run, started, command) VALUES(?, ?, ?)",
+                   std::int64_t{offset + sqlite3_column_int64(runs.get(), 0)}, detail::sql::text(runs.get(), 1),
+                   detail::sql::text(runs.get(), 2))
+               .get());
     auto sets = other.prepare("SELECT set_hash, title, scenarios, source FROM sets");
     while (other.has_row(sets.get()))
       add_set(detail::sql::hash_of(detail::sql::text(sets.get(), 0)), detail::sql::text(sets.get(), 1),
@@ -258,7 +258,7 @@ CAMBIUM_COLD void ResultStore::merge(ResultStore& other) {
                    detail::sql::text(behaviors.get(), 2), detail::sql::text(behaviors.get(), 3));
     in_transaction_ = true;  // `add` begins none
     other.for_each([&](ResultRow const& row) {
-      if (may_be_the_machine(row.result.error) && has(row.key)) return;
+      if (row.result.error_kind != RunErrorKind::run && has(row.key)) return;
       run_ = row.run > 0 ? offset + row.run : 0;
       add(row);
     });
@@ -295,11 +295,7 @@ CAMBIUM_COLD ResultStore::ResultStore(std::filesystem::path const& file, Databas
   execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " +
           detail::sql::columns(type_info<RunResult>(), true) + primary);
   execute("CREATE TABLE IF NOT EXISTS times(" + key + detail::sql::columns(type_info<RunTimes>(), true) + primary);
-  add_missing_column("sets", "source TEXT");  // of a database that an older version of cambium has made
-  add_missing_column("behaviors", "command TEXT");
-  add_missing_column("results", "others_failed INTEGER");
-  add_missing_column("results", "off_route INTEGER");
-  add_missing_column("results", "required_deceleration REAL");
+  add_missing_columns();
   execute("COMMIT");
   add_result_ = prepare("INSERT OR REPLACE INTO results(" + std::string(detail::sql::key_columns) + "seed, run, " +
                         detail::sql::columns(type_info<RunResult>(), false) + ") VALUES(" +
@@ -308,7 +304,7 @@ CAMBIUM_COLD ResultStore::ResultStore(std::filesystem::path const& file, Databas
                        detail::sql::columns(type_info<RunTimes>(), false) + ") VALUES(" +
                        detail::sql::marks(5 + type_info<RunTimes>().fields().size()) + ")");
   has_ = prepare(
-      "SELECT error FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND "
+      "SELECT error_kind FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND "
       "version=?");
 }
 
@@ -328,10 +324,12 @@ CAMBIUM_COLD void ResultStore::execute(std::string const& sql) {
     fail("cannot be written", "make room on the disk, or name another file");
 }
 
-CAMBIUM_COLD ResultStore::Statement ResultStore::prepare(std::string const& sql) {
+template <class... Values>
+ResultStore::Statement ResultStore::prepare(std::string const& sql, Values const&... values) {
   sqlite3_stmt* statement = nullptr;
   if (sqlite3_prepare_v2(db_.get(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK)
     fail("has other tables than this version of cambium", "name another file");
+  detail::sql::bind_values(statement, 1, values...);
   return Statement(statement);
 }
 
@@ -344,30 +342,28 @@ CAMBIUM_COLD bool ResultStore::has_row(sqlite3_stmt* query) {
   return code == SQLITE_ROW;
 }
 
-CAMBIUM_COLD std::string ResultStore::of_set(std::string const& column, std::uint64_t set_hash) {
-  auto statement = prepare("SELECT " + column + " FROM sets WHERE set_hash=?");
-  detail::sql::bind_value(statement.get(), 1, hash_text(set_hash));
-  return has_row(statement.get()) ? detail::sql::text(statement.get(), 0) : std::string();
+template <class... Values>
+std::string ResultStore::find_text(std::string const& sql, Values const&... values) {
+  auto const query = prepare(sql, values...);
+  return has_row(query.get()) ? detail::sql::text(query.get(), 0) : std::string();
 }
 
-CAMBIUM_COLD std::string ResultStore::of_behavior(std::string const& column, std::string const& name,
-                                                  std::uint64_t hash) {
-  auto statement = prepare("SELECT " + column + " FROM behaviors WHERE behavior=? AND parameters_hash=?");
-  detail::sql::bind_value(statement.get(), 1, name);
-  detail::sql::bind_value(statement.get(), 2, hash_text(hash));
-  return has_row(statement.get()) ? detail::sql::text(statement.get(), 0) : std::string();
+CAMBIUM_COLD bool ResultStore::add_missing_column(std::string const& table, std::string const& column) {
+  auto const name = column.substr(0, column.find(' '));
+  if (has_row(prepare("SELECT 1 FROM pragma_table_info(?) WHERE name=?", table, name).get())) return false;
+  execute("ALTER TABLE " + table + " ADD COLUMN " + column);
+  return true;
 }
 
-CAMBIUM_COLD void ResultStore::add_missing_column(std::string const& table, std::string const& column) {
-  auto query = prepare("SELECT 1 FROM pragma_table_info(?) WHERE name=?");
-  detail::sql::bind_value(query.get(), 1, table);
-  detail::sql::bind_value(query.get(), 2, column.substr(0, column.find(' ')));
-  if (!has_row(query.get())) execute("ALTER TABLE " + table + " ADD COLUMN " + column);
-}
-
-CAMBIUM_COLD std::int64_t ResultStore::last_run() {
-  auto query = prepare("SELECT COALESCE(MAX(run), 0) FROM runs");
-  return has_row(query.get()) ? sqlite3_column_int64(query.get(), 0) : 0;
+CAMBIUM_COLD void ResultStore::add_missing_columns() {
+  add_missing_column("sets", "source TEXT");
+  add_missing_column("behaviors", "command TEXT");
+  for (auto const& field : type_info<RunTimes>().fields()) add_missing_column("times", detail::sql::column_of(field));
+  for (auto const& field : type_info<RunResult>().fields())
+    if (add_missing_column("results", detail::sql::column_of(field)) && field.name == std::string_view("error_kind"))
+      execute(
+          "UPDATE results SET error_kind = CASE WHEN error LIKE 'its plans took longer than %' THEN 1 WHEN error LIKE "
+          "'the process that ran it died%' THEN 2 ELSE 0 END");
 }
 
 CAMBIUM_COLD void ResultStore::step(sqlite3_stmt* statement) {

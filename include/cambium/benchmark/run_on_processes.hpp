@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <deque>
-#include <optional>
 #include <string>
 #include <vector>
 

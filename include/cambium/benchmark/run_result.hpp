@@ -5,20 +5,19 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <string_view>
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
 
 namespace cambium {
 
-/// How the errors begin for which the machine may be to blame. Such scenarios are run again.
-inline constexpr char const *plans_too_long = "its plans took longer than ",
-                            *process_died = "the process that ran it died";
+/// What ended a run by an error: the run itself (also where there is no error), the limit of the time to plan, or the
+/// death of its process. The machine may be to blame for the last two, so such scenarios are run again.
+enum class RunErrorKind : std::uint8_t { run, plans_too_long, process_died };
 
-/// Whether the machine may be to blame for an error.
-[[nodiscard]] inline bool may_be_the_machine(std::string const& error) {
-  return error.starts_with(plans_too_long) || error.starts_with(process_died);
-}
+/// Which values of a measure are better.
+enum class Better { neither, more, less };
 
 /// A hash as in the database: 16 hexadecimal digits.
 [[nodiscard]] inline std::string hash_text(std::uint64_t hash) {
@@ -27,9 +26,8 @@ inline constexpr char const *plans_too_long = "its plans took longer than ",
   return text;
 }
 
-/// What came of one scenario with one behaviour. It depends on nothing but these two and the library: not on threads,
-/// machine load or time of day (`RunTimes` does). Excepted are errors that begin with `plans_too_long` or
-/// `process_died`.
+/// The result of one scenario with one behaviour. It depends on nothing but these two and the library: not on threads,
+/// machine load or time of day (`RunTimes` does). Excepted are errors for which the machine may be to blame.
 struct RunResult {
   bool success = false;
   bool collision = false;
@@ -38,6 +36,7 @@ struct RunResult {
   bool off_route = false;
   bool timed_out = false;
   std::string error{};
+  RunErrorKind error_kind = RunErrorKind::run;
   std::int64_t steps = 0;
   double duration_s = 0.0;
   double progress_m = 0.0;
@@ -68,6 +67,8 @@ struct RunResult {
                        parameter("off_route", &P::off_route, "it left its route, or traffic before its goal"),
                        parameter("timed_out", &P::timed_out, "the time limit passed"),
                        parameter("error", &P::error, "why the run could not go on; empty: it could"),
+                       choice("error_kind", &P::error_kind, "run|plans_too_long|process_died",
+                              "what ended the run, where it has an error"),
                        parameter("steps", &P::steps, "-", non_negative, "number of steps"),
                        parameter("duration_s", &P::duration_s, "s", non_negative, "until the run ended"));
     auto const driving = parameter_list(
@@ -92,6 +93,17 @@ struct RunResult {
                   "number of agents that found no plan, or an impossible one, and left traffic; not those under test"),
         parameter("hit", &P::hit, "the agent that the ego touched"));
     return join_parameters(outcome, driving);
+  }
+
+  /// Which values of a field are better. Better or worse are outcomes, safety and the closed-loop score. Neither are
+  /// speeds, gaps and the like, of which a good driver may have more or less; and time-outs, which lack success.
+  [[nodiscard]] static Better better(std::string_view field) {
+    for (char const* more : {"success", "rss_compliance", "closed_loop_score"})
+      if (field == more) return Better::more;
+    for (char const* less :
+         {"collision", "at_fault", "off_road", "off_route", "error", "hard_brakings", "others_collided"})
+      if (field == less) return Better::less;
+    return Better::neither;
   }
 };
 

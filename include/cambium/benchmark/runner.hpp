@@ -1,9 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -37,7 +35,7 @@ enum class Replays {
   all,
 };
 
-/// What to run of a benchmark, and how.
+/// Which jobs of a benchmark to run, and how.
 struct BenchmarkOptions {
   Executor executor = on_threads(std::max(1u, std::thread::hardware_concurrency()));
   std::size_t shard = 0, shards = 1;  ///< runs only the jobs number `shard`, `shard + shards`, ...
@@ -60,15 +58,20 @@ struct BenchmarkOptions {
 
 namespace detail {
 
+/// "merging, scenario 17".
+[[nodiscard]] inline std::string label_of(std::string const& set, std::size_t scenario) {
+  return set + ", scenario " + std::to_string(scenario);
+}
+
 /// A recording with what names its run.
 [[nodiscard]] inline Recording titled(Recording recording, std::string const& set, std::size_t scenario,
                                       std::string const& contender, RunResult const& result) {
-  recording.title = set + ", scenario " + std::to_string(scenario) + ", " + contender;
+  recording.title = label_of(set, scenario) + ", " + contender;
   recording.notes = {result.error.empty() ? run_outcomes[outcome_of(result)] : "error: " + result.error};
   return recording;
 }
 
-/// What a process knows of a benchmark, as a hash: scenarios of hash `set`, and a contender.
+/// Hash of what a process has read: scenarios of hash `set`, and a contender.
 template <class World>
 [[nodiscard]] std::uint64_t setup_of(std::uint64_t set, Contender<World> const& contender) {
   return set ^ (contender.parameters_hash * 0x9e3779b97f4a7c15u) ^ std::hash<std::string>{}(contender.name);
@@ -92,15 +95,14 @@ template <class World>
     if (job >= contenders.size() * set.scenarios.size()) return JobOutcome{.setup = 1};  // a worker that has other ones
     auto const c = job / set.scenarios.size(), i = job % set.scenarios.size();
     auto const& scenario = set.scenarios[i];
-    RunOptions const how{set.time_step, set.time_limit, options.plan_limit,
-                         set.title + ", scenario " + std::to_string(i)};
+    RunOptions const how{set.time_step, set.time_limit, options.plan_limit, label_of(set.title, i)};
     bool const all = options.replays == Replays::all;
     auto run = contenders[c].run(scenario, how, all);
     JobOutcome outcome{run.result, run.times, {}, {}, {}, setup_of(hash, contenders[c])};
     bool const wanted =
         options.replays == Replays::failures && !run.result.success && (*replays)[c]++ < options.most_replays;
     if (wanted) run = contenders[c].run(scenario, how, true);  // it is cheaper to run a failure again than to film all
-    if (wanted && run.result.success) {                        // its time to plan has run out only once, say
+    if (wanted && run.result.success) {                        // for example, its time to plan ran out only once
       outcome.problem = "run again for its replay, a failure was a success";
       return outcome;
     }
@@ -116,7 +118,7 @@ template <class World>
   };
 }
 
-/// Writes replays; reports the first that cannot be written.
+/// Writes replays; warns of the first that cannot be written.
 class ReplayFolder {
  public:
   ReplayFolder(BenchmarkOptions const& options, std::size_t contenders) : options_(options), written_(contenders) {}
@@ -152,7 +154,7 @@ class ReplayFolder {
 }  // namespace detail
 
 /// Runs each contender on each scenario of a set, and adds the results to `store` as they come. Jobs whose results the
-/// store has are left out, so a benchmark that was killed goes on where it was. A run that throws, or whose step fails,
+/// store has are left out, so a benchmark that was killed continues. A run that throws, or whose step fails,
 /// is a result with its `error`. Returns the number of jobs run. Throws `StoreError` if the store cannot be written,
 /// `ParameterError` if the set is invalid, or if two contenders have the same name and parameters.
 template <class World>
@@ -196,7 +198,7 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
 }
 
 /// In a worker of an executor: runs jobs for the process that calls `run_benchmark` with the same set, contenders and
-/// options, until that has no more.
+/// options, until none are left.
 template <class World>
 void serve_benchmark(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
                      BenchmarkOptions const& options) {

@@ -9,7 +9,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -28,8 +27,8 @@
 
 namespace cambium::detail {
 
-/// A forked copy of this process that runs jobs, so that a job that crashes, or never ends, takes nothing with it. It
-/// ends when this process does; elsewhere than on Linux, once its job has ended.
+/// A forked copy of this process that runs jobs, so that a job that crashes or never ends costs nothing else. It ends
+/// with this process; on systems other than Linux, once its job has ended.
 class JobProcess {
  public:
   /// `limit`: a job that takes longer is ended [s].
@@ -44,7 +43,7 @@ class JobProcess {
 
   [[nodiscard]] bool is_busy() const { return is_busy_; }
   [[nodiscard]] std::size_t job() const { return job_; }
-  /// Ready to be read when `wait` has something to do; for `poll`.
+  /// For `poll`: ready to be read when `wait` has something to do.
   [[nodiscard]] int socket() const { return socket_; }
 
   /// Precondition: not busy. Throws `Error` if the system gives no process.
@@ -55,23 +54,26 @@ class JobProcess {
     send_job();
   }
 
-  /// Waits for up to `milliseconds`. The bytes of the outcome of the job, once it is there. A job whose process dies is
-  /// run once more, because the death may be a stranger's doing; the second is its error.
+  /// Waits up to `milliseconds` for the outcome of the job; returns its bytes once it is complete. A job whose process
+  /// dies is run once more, because something else may have killed it; a second death is the job's error.
   [[nodiscard]] std::optional<std::string> wait(int milliseconds) {
     pollfd ready{socket_, POLLIN, 0};
     if (poll(&ready, is_busy_ ? 1 : 0, milliseconds) <= 0) {
       if (!is_busy_ || std::chrono::duration<double>(Clock::now() - begin_).count() <= limit_) return std::nullopt;
       kill(pid_, SIGKILL);
       static_cast<void>(end());
-      return failed(process_died + (": it was ended after " + rounded_text(limit_) + " s, in which it gave no result"));
+      return failed(": it was ended after " + rounded_text(limit_) + " s, in which it gave no result");
     }
     char buffer[1 << 16];
     auto const count = read(socket_, buffer, sizeof buffer);
     if (count > 0) {
       bytes_.append(buffer, static_cast<std::size_t>(count));
-      if (bytes_.size() < 8 || bytes_.size() < 8 + number_of(bytes_)) return std::nullopt;
+      std::uint64_t length = 0;
+      if (bytes_.size() < sizeof length) return std::nullopt;
+      std::memcpy(&length, bytes_.data(), sizeof length);
+      if (bytes_.size() < sizeof length + length) return std::nullopt;
       is_busy_ = false;
-      return std::exchange(bytes_, {}).substr(8);
+      return std::exchange(bytes_, {}).substr(sizeof length);
     }
     if (count < 0 && errno == EINTR) return std::nullopt;
     auto const death = end();
@@ -79,28 +81,22 @@ class JobProcess {
       send_job();
       return std::nullopt;
     }
-    return failed(process_died + (", twice: " + death));
+    return failed(", twice: " + death);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// A number as 8 bytes of this machine, and back.
-  [[nodiscard]] static std::string bytes_of(std::uint64_t number) {
-    std::string bytes(8, '\0');
-    std::memcpy(bytes.data(), &number, 8);
-    return bytes;
-  }
-  [[nodiscard]] static std::uint64_t number_of(std::string_view bytes) {
-    std::uint64_t number = 0;
-    std::memcpy(&number, bytes.data(), 8);
-    return number;
+  /// A number as 8 bytes of this machine.
+  [[nodiscard]] static std::string_view bytes_of(std::uint64_t const& number) {
+    return {reinterpret_cast<char const*>(&number), sizeof number};
   }
 
-  [[nodiscard]] std::string failed(std::string error) {
+  [[nodiscard]] std::string failed(std::string const& how) {
     is_busy_ = false;
     JobOutcome outcome;
-    outcome.result.error = std::move(error);
+    outcome.result.error = "the process that ran it died" + how;
+    outcome.result.error_kind = RunErrorKind::process_died;
     return outcome_bytes(outcome);
   }
 
@@ -145,18 +141,12 @@ class JobProcess {
   [[noreturn]] void work(int socket) const {
     for (int const end : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT}) std::signal(end, SIG_DFL);
     for (;;) {
-      char number[8];
-      std::size_t at = 0;
-      while (at < sizeof number) {
-        auto const count = read(socket, number + at, sizeof number - at);
-        if (count <= 0) _exit(0);
-        at += static_cast<std::size_t>(count);
-      }
-      auto const job = number_of({number, sizeof number});
+      std::uint64_t job = 0;
+      if (recv(socket, &job, sizeof job, MSG_WAITALL) != sizeof job) _exit(0);
       std::string bytes;
       try {
         auto const outcome = outcome_bytes(run_(static_cast<std::size_t>(job)));
-        bytes = bytes_of(outcome.size()) + outcome;
+        bytes = std::string(bytes_of(outcome.size())) + outcome;
       } catch (...) {
         std::fflush(nullptr);
         _exit(70);
@@ -180,7 +170,7 @@ class JobProcess {
     return true;
   }
 
-  /// Ends the child. Returns of what it died.
+  /// Ends the child; returns the cause of death.
   [[nodiscard]] std::string end() {
     int status = 0;
     close(socket_);
