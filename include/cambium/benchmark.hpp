@@ -1,4 +1,4 @@
-/// The room `benchmark`: behaviours under test, run on sets of scenarios, and what came of it.
+/// The room `benchmark`: behaviours under test, run on sets of scenarios, and their results.
 ///
 ///     ScenarioSet   x   Contenders   --run_benchmark-->   ResultStore (one SQLite file)   -->  tables, reports
 ///
@@ -12,7 +12,6 @@
 // First: it says which language and flags cambium needs.
 #include "cambium/core/macros.hpp"
 
-#include "cambium/benchmark/benchmark_main.hpp"
 #include "cambium/benchmark/comparison.hpp"
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/benchmark/executor.hpp"
@@ -27,3 +26,4 @@
 #include "cambium/benchmark/run_result.hpp"
 #include "cambium/benchmark/runner.hpp"
 #include "cambium/benchmark/statistics.hpp"
+#include "cambium/benchmark/table.hpp"

@@ -43,7 +43,8 @@ std::map<std::string, std::vector<std::string>> const optional_headers{
     {"nlohmann/json.hpp",
      {"cambium/core/json", "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps",
       "cambium/benchmark"}},
-    {"sqlite3.h", {"cambium/benchmark"}}};
+    {"sqlite3.h", {"cambium/benchmark"}},
+    {"CLI/CLI.hpp", {"cambium/benchmark/benchmark_main", "cambium/benchmark/benchmark_on_ranks"}}};
 
 /// Who makes maps brings what a map itself calls.
 bool makes_maps(std::string const& header) { return header == "cambium/map/building/build_map.hpp"; }

@@ -121,14 +121,14 @@ left_to_all(structure.headers_twice "compiles all headers; here structure.two_un
 if(NOT CAMBIUM_QUICK_TESTS)
   write_if_new(${structure_binary}/twice.cpp "int main() {}\n")
   add_library(structure_all_headers OBJECT EXCLUDE_FROM_ALL ${structure_binary}/all_headers.cpp)
-  target_link_libraries(structure_all_headers PRIVATE cambium::benchmark)
+  target_link_libraries(structure_all_headers PRIVATE cambium::benchmark_main)
   target_compile_options(structure_all_headers PRIVATE -O0 ${CAMBIUM_WARNINGS} -Werror)
   add_custom_command(OUTPUT ${structure_binary}/all_headers_again.o
     COMMAND ${CMAKE_COMMAND} -E copy $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o
     DEPENDS structure_all_headers $<TARGET_OBJECTS:structure_all_headers> VERBATIM)
   add_executable(structure_headers_twice EXCLUDE_FROM_ALL ${structure_binary}/twice.cpp
     $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o)
-  target_link_libraries(structure_headers_twice PRIVATE cambium::benchmark)
+  target_link_libraries(structure_headers_twice PRIVATE cambium::benchmark_main)
   add_build_test(structure.headers_twice structure_headers_twice)
 endif()
 

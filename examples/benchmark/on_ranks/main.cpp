@@ -2,7 +2,7 @@
 #include <boost/mpi/communicator.hpp>
 #include <boost/mpi/environment.hpp>
 
-#include "cambium/benchmark/run_on_ranks.hpp"
+#include "cambium/benchmark/benchmark_on_ranks.hpp"
 
 #include "../program.hpp"
 

@@ -8,16 +8,19 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <iostream>
 #include <iterator>
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include <CLI/CLI.hpp>
+
 #include "cambium/benchmark/benchmark_main.hpp"
-#include "cambium/benchmark/detail/arguments.hpp"
 #include "cambium/benchmark/detail/report_text.hpp"
 #include "cambium/benchmark/executor.hpp"
 #include "cambium/benchmark/html_report.hpp"
@@ -27,8 +30,18 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/json_document.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/nearest_names.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
+#include "cambium/core/write_file.hpp"
+#include "cambium/viewer/html_replay.hpp"
+
+#if __has_include(<sys/wait.h>)
+#define CAMBIUM_HAS_PROCESSES 1
+#include "cambium/benchmark/run_on_processes.hpp"
+#else
+#define CAMBIUM_HAS_PROCESSES 0
+#endif
 
 namespace cambium {
 
@@ -42,41 +55,180 @@ CAMBIUM_COLD std::string shell_word(std::string const& word) {
 
 namespace detail {
 
-CAMBIUM_COLD std::vector<Option> benchmark_options() {
-  std::vector<Option> options{
-      {"--set", "FILE|NAME", "scenario files (.json) or names of sets, separated by commas"},
-      {"--behaviors", "A,B,...", "the behaviours to run; all without it"},
-      {"--scenarios", "N", "number of scenarios that each recipe draws, instead of its own"},
-      {"--seed", "S", "seed of the recipes, instead of their own"},
-      {"--split", "train|test",
-       "train: other scenarios of the recipes than usual, to tune a behaviour on; test: the usual ones, to report"},
-      {"--threads", "T", "number of threads; the results do not depend on it"},
-      {"--db", "FILE", "database of the results; what it has already is not run again"},
-      {"--shard", "i/n", "run only the i-th of n parts, i from 0; merge the databases with examples/run report"},
-      {"--plan-limit", "SECONDS",
-       "ends a run whose plans take longer than that together: an error. With --processes, a plan that never "
-       "returns is ended, too. Off without it, because the results then depend on the machine"},
-      {"--replays", "failures|all|none",
-       "the runs that leave a replay in a folder beside the database (results_replays beside results.db); failures "
-       "(usual): of those of each behaviour and set, the first 20. A failure leaves a snapshot, too"},
-      {"--again", "", "run also what the database has already"},
-      {"--only", "SET:NUMBER:BEHAVIOR", "run one scenario and print what came of it"},
-      {"--replay", "FILE",
-       "with --only: write a replay that opens in a browser, and beside it the snapshot of a failure"},
-      {"--json", "FILE", "write the table, a row a set, title of its recipes, and behaviour"},
-      {"--list", "", "list behaviours and sets, and exit"},
-      {"--help", "", "print this and exit"}};
-  if (CAMBIUM_HAS_PROCESSES)
-    options.insert(options.begin() + 6, {"--processes", "N",
-                                         "in place of threads: each run in one of N processes. A behaviour that "
-                                         "crashes then costs that run only"});
-  return options;
+/// Adds an option with a value: `take(word)` stores it, or throws `Error`.
+template <class Take>
+void add_text(CLI::App& app, char const* name, char const* kind, char const* sentence, Take const& take) {
+  app.add_option_function<std::string>(name, take, sentence)->type_name(kind);
 }
 
-CAMBIUM_COLD std::optional<std::filesystem::path> nested_set(std::filesystem::path const& folder,
-                                                             std::string const& name) {
+/// Adds an option whose value is a whole number from `low` to `high`.
+template <class Take>
+void add_whole(CLI::App& app, std::string const& name, char const* kind, std::uint64_t low, std::uint64_t high,
+               char const* sentence, Take const& take) {
+  add_text(app, name.c_str(), kind, sentence, [=](std::string const& word) {
+    auto const value = parse_number<std::uint64_t>(word);
+    if (!value || *value < low || *value > high)
+      throw Error(name, "is '" + word + "'",
+                  "give a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    take(*value);
+  });
+}
+
+/// "i/n": the i-th of n parts.
+inline void take_shard(std::string const& word, BenchmarkOptions& options) {
+  auto const parts = split(word, "/");
+  auto const i = parse_number<std::size_t>(parts[0]), n = parse_number<std::size_t>(parts.back());
+  if (parts.size() != 2 || !i || !n || *n == 0 || *i >= *n)
+    throw Error("--shard", "is '" + word + "'", "write i/n with i from 0 to n - 1, as 0/4");
+  options.shard = *i;
+  options.shards = *n;
+}
+
+/// What is wrong with a command line that CLI11 refuses.
+[[nodiscard]] inline Error command_error(CLI::App const& app, CLI::ParseError const& problem) {
+  std::vector<std::string> names;
+  for (auto const* const option : app.get_options()) {
+    names.push_back(option->get_name());
+    if (option->count() > 1) return {names.back(), "is given twice", "give it once"};
+  }
+  std::string const text = problem.what(), named = text.substr(0, text.find(':'));
+  if (auto const* const option = app.get_option_no_throw(named))
+    return {named, "lacks its value", "write " + named + " " + option->get_type_name()};
+  auto const extra = app.remaining();
+  if (extra.empty()) return {"command line", text, "--help lists the options"};
+  auto const name = extra.front().substr(0, extra.front().find('='));
+  return {extra.front(), "is no option",
+          (nearest_names(name, names).empty() ? "" : suggestion(name, names) + " ") + "(--help lists them)"};
+}
+
+inline std::map<std::string, Replays> const replays_by_word{
+    {"failures", Replays::failures}, {"all", Replays::all}, {"none", Replays::none}};
+
+/// Adds the options, which fill `command`. Sets are held in memory, hence the limit of scenarios.
+inline void add_benchmark_options(CLI::App& app, BenchmarkCommand& command) {
+  auto& options = command.options;
+  auto const store_in = [](auto& target) { return [&target](auto const& value) { target = value; }; };
+  auto const list_in = [](std::vector<std::string>& names) {
+    return [&names](std::string const& word) {
+      for (auto const part : split(word, ",")) names.emplace_back(trimmed(part));
+    };
+  };
+  add_text(app, "--set", "FILE|NAME", "scenario files (.json) or names of sets, separated by commas",
+           list_in(command.sets));
+  add_text(app, "--behaviors", "A,B,...", "the behaviours to run; default: all", list_in(command.behaviors));
+  add_whole(app, "--scenarios", "N", 1, 100'000, "number of scenarios that each recipe draws, instead of its own",
+            store_in(command.scenarios));
+  add_whole(app, "--seed", "S", 0, ~std::uint64_t{0}, "seed of the recipes, instead of their own",
+            store_in(command.seed));
+  add_text(app, "--split", "train|test",
+           "train: other scenarios of the recipes, to tune a behaviour on; test (default): those to report",
+           [&](auto const& word) {
+             command.trains = word == "train";
+             if (!command.trains && word != "test") throw Error("--split", "is '" + word + "'", "write train or test");
+           });
+  add_whole(app, "--threads", "T", 1, 4096, "number of threads; the results do not depend on it",
+            [&](auto count) { options.executor = on_threads(static_cast<std::size_t>(count)); });
+#if CAMBIUM_HAS_PROCESSES
+  add_whole(app, "--processes", "N", 1, 4096,
+            "in place of threads: each run in one of N processes. A behaviour that crashes then costs that run only",
+            [&](auto count) { options.executor = on_processes(static_cast<std::size_t>(count)); });
+#endif
+  add_text(app, "--db", "FILE", "database of the results; what it has already is not run again",
+           store_in(command.database));
+  add_text(app, "--shard", "i/n",
+           "run only the i-th of n parts, i from 0; merge the databases with examples/run report",
+           [&](auto const& word) { take_shard(word, options); });
+  add_text(
+      app, "--plan-limit", "SECONDS",
+      "ends a run whose plans take longer than that together: an error. With --processes, a plan that never returns "
+      "is ended, too. Default: no limit, because the results then depend on the machine",
+      [&](auto const& word) {
+        options.plan_limit = parse_number<double>(word).value_or(0.0);
+        if (!(options.plan_limit > 0.0))
+          throw Error("--plan-limit", "is '" + word + "'", "give a number of seconds above 0");
+      });
+  add_text(app, "--replays", "failures|all|none",
+           "the runs that leave a replay in a folder beside the database (results_replays beside results.db); failures "
+           "(default): of those of each behaviour and set, the first 20. A failure leaves a snapshot, too",
+           [&](auto const& word) {
+             if (!replays_by_word.contains(word))
+               throw Error("--replays", "is '" + word + "'", "write failures, all or none");
+             options.replays = replays_by_word.at(word);
+           });
+  app.add_flag("--again", options.again, "run also what the database has already");
+  add_text(app, "--only", "SET:NUMBER:BEHAVIOR", "run one scenario and print what came of it", store_in(command.only));
+  add_text(app, "--replay", "FILE",
+           "with --only: write a replay that opens in a browser, and beside it the snapshot of a failure",
+           store_in(command.replay));
+  add_text(app, "--json", "FILE", "write the table: a row for each set, title of its recipes, and behaviour",
+           store_in(command.json));
+  app.add_flag("--list", command.lists, "list behaviours and sets, and exit");
+  app.set_help_flag("--help", "print this and exit");
+}
+
+/// Throws `Error` for options that do not go together.
+inline void check_command(BenchmarkCommand const& command) {
+  if (command.database.empty()) throw Error("--db", "is empty", "name a file, or leave the option out");
+  if (command.replay && !command.only) throw Error("--replay", "needs --only", "say which scenario to replay");
+  if (!command.json) return;
+  if (command.only) throw Error("--json", "goes with runs of sets, not with --only", "leave it out");
+  namespace fs = std::filesystem;
+  if (command.json->empty() || fs::is_directory(*command.json) ||
+      !fs::is_directory(fs::absolute(*command.json).parent_path()))
+    throw Error("--json '" + *command.json + "'", "names no file in a folder that exists", "name one");
+}
+
+CAMBIUM_COLD std::optional<BenchmarkCommand> parse_benchmark_command(int argc, char const* const* argv,
+                                                                     BenchmarkDefaults const& defaults) {
+  BenchmarkCommand command{.database = defaults.out / "results.db"};
+  CLI::App app("Runs behaviours on sets of scenarios.", "benchmark");
+  add_benchmark_options(app, command);
+  try {
+    app.parse(argc, argv);
+  } catch (CLI::CallForHelp const&) {
+    if (!defaults.executor.is_worker) std::cout << app.help();
+    return std::nullopt;
+  } catch (CLI::ParseError const& problem) {
+    throw command_error(app, problem);
+  }
+  auto const is_given = [&](char const* name) {
+    auto const* const option = app.get_option_no_throw(name);
+    return option != nullptr && option->count() > 0;
+  };
+  for (char const* name : {"--threads", "--processes"})
+    if (defaults.executor.execute && is_given(name))
+      throw Error(name, "is given, but the jobs run on " + defaults.executor.name, "leave it out");
+  if (is_given("--threads") && is_given("--processes"))
+    throw Error("--processes", "is given beside --threads", "give one of them");
+  if (defaults.executor.execute) command.options.executor = defaults.executor;
+  if (command.sets.empty()) command.sets = {defaults.set};
+  check_command(command);
+  command.options.replay_folder = replay_folder(command.database);
+  for (std::string const name : {"--scenarios", "--seed", "--split", "--plan-limit"})
+    if (is_given(name.c_str())) command.drawing += " " + name + " " + app.get_option(name)->as<std::string>();
+  return command;
+}
+
+CAMBIUM_COLD std::string list_of(std::vector<std::string> const& behaviors, BenchmarkDefaults const& defaults) {
+  std::string text = "behaviours:\n";
+  for (auto const& name : behaviors) text += "  " + name + "\n";
+  text += "sets:\n";
+  std::error_code none_there;
+  for (auto const& entry : std::filesystem::directory_iterator(defaults.sets, none_there)) {
+    if (!entry.is_directory()) continue;
+    auto const name = entry.path().filename().string();
+    text += "  " + name + ":";
+    for (auto const& file : set_files({name}, defaults)) text += " " + file.stem().string();
+    text += "\n";
+  }
+  return text;
+}
+
+/// The file of that name in a folder of `folder`; nothing if there is none, or several.
+[[nodiscard]] inline std::optional<std::filesystem::path> nested_set(std::filesystem::path const& folder,
+                                                                     std::string const& name) {
   std::optional<std::filesystem::path> found;
-  if (name.empty() || !std::filesystem::is_directory(folder)) return found;
+  if (!std::filesystem::is_directory(folder)) return found;
   for (auto const& inner : std::filesystem::directory_iterator(folder)) {
     auto const file = inner.path() / (name + ".json");
     if (!inner.is_directory() || !std::filesystem::is_regular_file(file)) continue;
@@ -87,29 +239,28 @@ CAMBIUM_COLD std::optional<std::filesystem::path> nested_set(std::filesystem::pa
 }
 
 CAMBIUM_COLD std::vector<std::filesystem::path> set_files(std::vector<std::string> const& names,
-                                                          std::filesystem::path const& folder,
-                                                          std::string const& usual) {
+                                                          BenchmarkDefaults const& defaults) {
+  auto const& folder = defaults.sets;
   std::vector<std::filesystem::path> files;
   for (auto const& name : names) {
-    std::filesystem::path const places[] = {name, folder / (name + ".json"), folder / usual / (name + ".json")};
+    std::filesystem::path const places[] = {name, folder / (name + ".json"), folder / defaults.set / (name + ".json")};
     auto const* const place =
         std::ranges::find_if(places, [](auto const& path) { return std::filesystem::is_regular_file(path); });
+    bool const is_folder = !name.empty() && std::filesystem::is_directory(folder / name);
+    auto const nested = is_folder || name.empty() ? std::nullopt : nested_set(folder, name);
     if (place != std::end(places)) {
       files.push_back(*place);
-      continue;
-    }
-    if (auto const nested = nested_set(folder, name); nested && !std::filesystem::is_directory(folder / name)) {
+    } else if (nested) {
       files.push_back(*nested);
-      continue;
-    }
-    if (name.empty() || !std::filesystem::is_directory(folder / name))
+    } else if (is_folder) {
+      auto const first = static_cast<std::ptrdiff_t>(files.size());
+      for (auto const& entry : std::filesystem::directory_iterator(folder / name))
+        if (entry.path().extension() == ".json") files.push_back(entry.path());
+      std::sort(files.begin() + first, files.end());
+    } else {
       throw Error("--set " + name, "is neither a scenario file nor a folder in " + folder.string(),
                   "--list names the sets that there are");
-    std::vector<std::filesystem::path> found;
-    for (auto const& entry : std::filesystem::directory_iterator(folder / name))
-      if (entry.path().extension() == ".json") found.push_back(entry.path());
-    std::sort(found.begin(), found.end());
-    files.insert(files.end(), found.begin(), found.end());
+    }
   }
   return files;
 }
@@ -121,8 +272,7 @@ CAMBIUM_COLD std::string summary_json(std::vector<TrafficGroup> const& parts) {
     for (auto const& measure : measures()) means[measure.key] = mean_of_measure(group, measure);
     auto successes = group;
     std::erase_if(successes.rows, [](auto const& row) { return !row.result.success; });
-    for (auto const& measure : measures())
-      if (measure.key == "duration_s") means["mean_time_s"] = mean_of_measure(successes, measure);
+    means["mean_time_s"] = mean_of_measure(successes, measures()[measure_index("duration_s")]);
     std::vector<JsonValue::Member> row{{"planner", {group.behavior}},
                                        {"situation", {group.set}},
                                        {"traffic", traffic.empty() ? JsonValue{} : JsonValue{traffic}},
@@ -154,50 +304,29 @@ CAMBIUM_COLD std::string time_of_day() {
   return text;
 }
 
-CAMBIUM_COLD BenchmarkOptions options_of(Arguments const& arguments, std::filesystem::path const& database,
-                                         Executor const& executor) {
-  BenchmarkOptions options;
-  auto const threads = arguments.whole("--threads", 1, 4096);
-  if (threads) options.executor = on_threads(static_cast<std::size_t>(*threads));
-#if CAMBIUM_HAS_PROCESSES
-  if (auto const processes = arguments.whole("--processes", 1, 4096)) {
-    if (threads) throw Error("--processes", "is given beside --threads", "give one of them");
-    options.executor = on_processes(static_cast<std::size_t>(*processes));
-  }
-#endif
-  if (executor.execute) {
-    if (threads || arguments.has("--processes"))
-      throw Error(threads ? "--threads" : "--processes", "is given, but the jobs run on " + executor.name,
-                  "leave it out");
-    options.executor = executor;
-  }
-  options.again = arguments.has("--again");
-  options.plan_limit = arguments.seconds("--plan-limit").value_or(options.plan_limit);
-  options.replay_folder = replay_folder(database);
-  auto const replays = arguments.text("--replays").value_or("failures");
-  if (replays != "failures" && replays != "all" && replays != "none")
-    throw Error("--replays", "is '" + replays + "'", "write failures, all or none");
-  options.replays = replays == "failures" ? Replays::failures : replays == "all" ? Replays::all : Replays::none;
-  if (auto const shard = arguments.text("--shard")) {
-    auto const parts = split(*shard, "/");
-    auto const i = parse_number<std::size_t>(parts[0]), n = parse_number<std::size_t>(parts.back());
-    if (parts.size() != 2 || !i || !n || *n == 0 || *i >= *n)
-      throw Error("--shard", "is '" + *shard + "'", "write i/n with i from 0 to n - 1, as 0/4");
-    options.shard = *i;
-    options.shards = *n;
-  }
-  return options;
-}
-
-CAMBIUM_COLD std::string source_of(Arguments const& arguments, std::filesystem::path const& file,
+CAMBIUM_COLD std::string source_of(BenchmarkCommand const& command, std::filesystem::path const& file,
                                    std::filesystem::path const& folder) {
   auto const below = file.lexically_relative(folder);
   bool const is_below = !below.empty() && *below.begin() != "..";
-  std::string source =
-      "--set " + shell_word(is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file));
-  for (char const* option : {"--scenarios", "--seed", "--split", "--plan-limit"})
-    if (auto const value = arguments.text(option)) source += std::string(" ") + option + " " + *value;
-  return source;
+  return "--set " + shell_word(is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file)) +
+         command.drawing;
+}
+
+CAMBIUM_COLD void write_replay(std::filesystem::path const& replay, Run run) {
+  if (!run.recording)
+    throw Error("--replay " + replay.string(), "there is nothing to replay",
+                "the run ended before it began: see its error");
+  write_html_replay(replay, *run.recording);
+  std::cout << "  " << replay.string() << " plays it in a browser\n";
+  if (!run.problem.empty()) std::cout << "  there is no snapshot beside it: " << run.problem << "\n";
+  auto const snapshot = std::filesystem::path(replay).replace_extension(".snapshot");
+  if (run.snapshot.empty()) {
+    std::error_code refused;
+    std::filesystem::remove(snapshot, refused);  // of an earlier run
+    return;
+  }
+  write_file(snapshot, run.snapshot);
+  std::cout << "  " << snapshot.string() << " is its state before the end\n";
 }
 
 CAMBIUM_COLD std::string lines_of(RunResult const& result) {

@@ -16,7 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/benchmark/benchmark_main.hpp"
 #include "cambium/benchmark/detail/job_process.hpp"
 #include "cambium/benchmark/detail/outcome_bytes.hpp"
 #include "cambium/benchmark/executor.hpp"
@@ -25,10 +24,10 @@
 
 /// A benchmark on the ranks of an MPI program: rank 0 has the store and hands out jobs, the others run them, each in a
 /// forked process. For POSIX systems. This header includes nothing of MPI: `Communicator` is a boost::mpi::communicator
-/// (link cambium::mpi), or has its members rank, size, iprobe, recv, send and abort.
+/// (link cambium::mpi), or has its members rank, size, iprobe, recv and send.
 namespace cambium {
 
-/// How ranks look after each other.
+/// How long ranks wait for each other.
 struct RankOptions {
   /// A rank that is silent for longer counts as lost, and others take its jobs; before its first word, when it may
   /// still read scenarios, ten times as long [s].
@@ -222,32 +221,6 @@ template <class Communicator>
               },
           .is_worker = ranks.rank() != 0,
           .name = std::to_string(ranks.size() - 1) + (ranks.size() == 2 ? " rank" : " ranks")};
-}
-
-/// `benchmark_main` on all ranks of an MPI program:
-///
-///     int main(int argc, char** argv) {
-///       boost::mpi::environment const environment(argc, argv);
-///       return cambium::benchmark_on_ranks(boost::mpi::communicator(), argc, argv, contenders);
-///     }
-///
-/// After an error, or if a rank was lost, it ends the program by `abort`, which ends all other ranks, too.
-template <class Communicator, class World>
-int benchmark_on_ranks(Communicator const& ranks, int argc, char const* const* argv,
-                       std::vector<Contender<World>> const& contenders, BenchmarkDefaults defaults = {},
-                       RankOptions options = {}) {
-  bool is_lost = false;
-  options.warn = [&is_lost, warn = std::move(options.warn)](std::string const& sentence) {
-    is_lost = true;
-    if (warn) warn(sentence);
-  };
-  defaults.executor = on_ranks(ranks, std::move(options));
-  int const code = benchmark_main(argc, argv, contenders, defaults);
-  if (code == 0 && !is_lost) return 0;
-  std::cout.flush();
-  std::fflush(nullptr);
-  ranks.abort(code);
-  return code;
 }
 
 }  // namespace cambium

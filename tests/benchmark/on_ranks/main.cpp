@@ -12,7 +12,7 @@
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/benchmark/run_on_ranks.hpp"
+#include "cambium/benchmark/benchmark_on_ranks.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"
