@@ -22,7 +22,7 @@ namespace cambium {
 
 namespace detail {
 
-/// The next vehicle: a car where it would not fit.
+/// The next vehicle; a car where the drawn one would not fit.
 CAMBIUM_COLD geometry::Shape random_shape(Map const& map, VehicleMix const& mix, map::Route const& route,
                                           RandomStream& random) {
   auto const shape = mix(random);

@@ -31,7 +31,7 @@
 
 namespace cambium {
 
-/// A parameter of a behaviour that each driver has a value of its own of.
+/// A behaviour parameter drawn separately for each driver.
 struct DrawnParameter {
   std::string key{};
   Distribution value{};
@@ -101,7 +101,7 @@ struct LaneFlow {
         parameter("goal", &P::goal, "of the vehicles"), choice("goal_of", &P::goal_of, "all|ego", "who has the goal"),
         choice("ego", &P::ego, "none|first|middle|last|random", "which vehicle is the ego; the front one is the first"),
         parameter("controlled_share", &P::controlled_share, "-", Range{0, 1},
-                  "part of the other vehicles that a benchmark drives, too"));
+                  "share of the other vehicles that a benchmark drives, too"));
     return join_parameters(where, what);
   }
 };
@@ -124,7 +124,7 @@ struct FlowPlan {
   std::string where{};
 };
 
-/// The lanes that an end of a flow may mean, the most likely one first. Throws `ParameterError` if there is none.
+/// The candidate lanes of an end of a flow, the most likely one first. Throws `ParameterError` if there is none.
 [[nodiscard]] inline std::vector<LaneId> lanes_of(Map const& map, LaneId lane,
                                                   std::optional<geometry::Point> const& point, char const* name,
                                                   std::string const& where) {
@@ -142,7 +142,7 @@ struct FlowPlan {
   return lanes;
 }
 
-/// The way of a flow that is no lane. Throws `ParameterError` at `plan.where` if it has a source or sink beside it, or
+/// Plans a way off the lanes. Throws `ParameterError` at `plan.where` if it has a source or sink beside it, or
 /// if nobody would be on foot.
 template <class World>
 void plan_free_way(Map const& map, FlowPlan<World>& plan) {
@@ -160,7 +160,7 @@ void plan_free_way(Map const& map, FlowPlan<World>& plan) {
   plan.lanes = &plan.road->corridors.front();
 }
 
-/// The way of a flow. Throws `ParameterError` at `plan.where` if there is none.
+/// Plans the way of a flow. Throws `ParameterError` at `plan.where` if there is none.
 template <class World>
 void plan_way(std::shared_ptr<Map const> const& map, FlowPlan<World>& plan) {
   auto const& flow = plan.flow;
@@ -244,8 +244,8 @@ template <class World>
   return plans;
 }
 
-/// Whether a vehicle that has just entered, and the next ones ahead and behind, keep their headway and can go on
-/// without braking hard, and whether it can stop before what is ahead.
+/// Whether a vehicle that has just entered and its neighbours ahead and behind keep their headway and need not brake
+/// hard, and whether it can stop before signals and zones of conflict ahead.
 template <class World>
 [[nodiscard]] bool has_room(World& world, AgentId id, InflowRules const& rules) {
   auto const slot = world.slot_of(id);
@@ -334,8 +334,8 @@ void choose_ego(LaneFlow<World> const& flow, std::vector<AgentId> const& entered
     }
 }
 
-/// Scenario `number` of planned flows at `site`, a scenario without agents: the first of up to 100 draws in which all
-/// flows that shall have an ego have one.
+/// Scenario `number` of planned flows at `site`, a scenario without agents: the first of up to 100 draws in which
+/// each flow with an ego gets one.
 template <class World>
 [[nodiscard]] Scenario<World> draw_flows(Scenario<World> const& site, std::vector<FlowPlan<World>> const& plans,
                                          InflowRules const& rules, std::uint32_t number, std::string const& where) {

@@ -99,7 +99,7 @@ CAMBIUM_COLD std::size_t count_crossings(Map const& map, std::vector<MergingSite
   return count;
 }
 
-/// What a map lacks if `find_ramp` finds nothing.
+/// Why `find_ramp` finds nothing on a map.
 CAMBIUM_COLD std::string missing_for_merging(Map const& map, std::vector<MergingSite::Entrance> const& entrances) {
   std::size_t merges = 0;
   for (auto const& lane : map.lanes())
@@ -191,7 +191,7 @@ CAMBIUM_COLD Scenario<MergingSite::World> draw_merging(MergingSite const& site, 
   return scenario;
 }
 
-/// Sets who lets whom in; the draws of the traffic stay the same.
+/// Sets who yields at the merge, without changing the traffic's draws.
 CAMBIUM_COLD void set_merging(Scenario<MergingSite::World>& scenario, std::uint32_t number,
                               MergingTraffic const& traffic) {
   RandomStream random(scenario.seed, number, 0, 1);

@@ -103,39 +103,24 @@ template <class World>
   };
   if (recipe.kind != Kind::lanes && !(recipe.lights.empty() && recipe.objects.empty()))
     throw ParameterError(where, "has lights or objects, but no flows", "leave them out, or make it of kind lanes");
-  switch (recipe.kind) {
-    case Kind::lanes: {
-      check_parameters(recipe.room, where);
-      Scenario<World> const site{.map = map, .seed = recipe.seed, .lights = recipe.lights, .objects = recipe.objects};
-      try {
-        static_cast<void>(site.make_world());
-      } catch (Error const& problem) {
-        throw ParameterError(where, problem.what());
-      }
-      auto const plans = detail::plan_flows(map, recipe.flows, where);
-      each([&](std::uint32_t number) { return detail::draw_flows(site, plans, recipe.room, number, where); });
-      break;
-    }
-    case Kind::merging: {
-      auto const site = find_merging_site(map, where);
-      each([&](std::uint32_t n) {
-        return detail::with_drivers_of<World>(site.sample(recipe.seed, n, recipe.merging), where);
-      });
-      break;
-    }
-    case Kind::highway: {
-      auto const site = find_highway_site(map, where);
-      each([&](std::uint32_t n) { return detail::with_drivers_of<World>(site.sample(recipe.seed, n), where); });
-      break;
-    }
-    case Kind::junction: {
-      auto const site = find_junction_site(map, where);
-      each([&](std::uint32_t n) {
-        return detail::with_drivers_of<World>(site.sample(recipe.seed, n, recipe.junction), where);
-      });
-      break;
-    }
+  auto const sample = [&](auto const& site, auto const&... traffic) {
+    each([&](std::uint32_t n) {
+      return detail::with_drivers_of<World>(site.sample(recipe.seed, n, traffic...), where);
+    });
+  };
+  if (recipe.kind == Kind::merging) sample(find_merging_site(map, where), recipe.merging);
+  if (recipe.kind == Kind::highway) sample(find_highway_site(map, where));
+  if (recipe.kind == Kind::junction) sample(find_junction_site(map, where), recipe.junction);
+  if (recipe.kind != Kind::lanes) return scenarios;
+  check_parameters(recipe.room, where);
+  Scenario<World> const site{.map = map, .seed = recipe.seed, .lights = recipe.lights, .objects = recipe.objects};
+  try {
+    static_cast<void>(site.make_world());
+  } catch (Error const& problem) {
+    throw ParameterError(where, problem.what());
   }
+  auto const plans = detail::plan_flows(map, recipe.flows, where);
+  each([&](std::uint32_t number) { return detail::draw_flows(site, plans, recipe.room, number, where); });
   return scenarios;
 }
 

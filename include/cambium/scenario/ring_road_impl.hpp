@@ -1,14 +1,10 @@
 #pragma once
 
-#include <cmath>
-#include <memory>
-
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/building/map_builder.hpp"
-#include "cambium/map/routing/route.hpp"
 #include "cambium/scenario/ring_road.hpp"
 
 namespace cambium {

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -63,16 +62,16 @@ void complete(ScenarioSet<WorldType>& set, LaneTable const& lanes, std::filesyst
     } catch (Error const& problem) {
       throw WorldError(place, problem.what());
     }
-    std::vector<detail::StartingBody> bodies;
-    for (auto const& agent : world->roster().agents) {
-      if (world->frame().agents[world->slot_of(agent.id)].status == AgentStatus::not_started) continue;
-      auto const& state = world->state(agent.id);
-      bodies.push_back({agent.id, {state.x, state.y, state.heading}, agent.shape});
+    for (Slot slot{}; index_of(slot) < world->size(); ++slot) {
+      auto const contact = Collision{}.contact(*world, slot);
+      if (!contact) continue;
+      auto const id = to_string(world->roster().agents[slot].id);
+      throw WorldError(place,
+                       is_valid(contact->agent)
+                           ? "agents " + id + " and " + to_string(contact->agent) + " overlap at the start"
+                           : "agent " + id + " overlaps a static object",
+                       "move one of them");
     }
-    detail::check_overlaps(bodies, place);
-    for (auto const& agent : world->roster().agents)
-      if (Collision{}(*world, world->slot_of(agent.id)))
-        throw WorldError(place, "agent " + to_string(agent.id) + " overlaps a static object", "move one of them");
   }
   for (std::size_t i = 0; i < set.recipes.size(); ++i) {
     auto& recipe = set.recipes[i];

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
@@ -94,13 +92,16 @@ class CommonRoadReader : private CommonRoadLanes {
       return warn(node, name + " has no shape, or no state with position and time; it was left out");
     track.length = shape->length;
     track.width = shape->width;
-    if (!(track.length > 1e-3 && track.width > 1e-3 && track.length <= 100.0 && track.width <= 100.0))
-      return warn(node, name + " is not up to 100 m long and wide; it was left out");
+    if (!is_body(*shape)) return warn(node, name + " is not up to 100 m long and wide; it was left out");
     track.states.push_back(*initial);
     if (!stands) read_motion(node, track);
     for (auto& state : track.states) shift(state, *shape);
     if (!ids_.insert(*id).second) return warn(node, name + " is there already; the second one was left out");
     traffic_.tracks.push_back(std::move(track));
+  }
+
+  [[nodiscard]] static bool is_body(CommonRoadShape const& shape) {
+    return shape.length > 1e-3 && shape.width > 1e-3 && shape.length <= 100.0 && shape.width <= 100.0;
   }
 
   /// From the origin of the obstacle's frame to the middle of its shape.
@@ -146,8 +147,7 @@ class CommonRoadReader : private CommonRoadLanes {
     auto const id = id_of(node);
     auto const shape = shape_of(xml::find_child(node, "shape"));
     if (!id) return;
-    if (!shape || !(shape->length > 1e-3 && shape->width > 1e-3 && shape->length <= 100.0 && shape->width <= 100.0) ||
-        !ids_.insert(*id).second)
+    if (!shape || !is_body(*shape) || !ids_.insert(*id).second)
       return warn(node, "obstacle " + std::to_string(*id) + " has no shape of up to 100 m; it was left out");
     note(node, "obstacle " + std::to_string(*id) + " became the rectangle around it");
     traffic_.tracks.push_back({*id,

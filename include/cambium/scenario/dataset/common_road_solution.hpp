@@ -9,7 +9,7 @@
 
 namespace cambium {
 
-/// How a solution is judged by those who collect them.
+/// A solution of a CommonRoad planning problem, and how it is to be judged.
 struct CommonRoadSolution {
   std::string benchmark_id{};         ///< of the scenario
   std::int64_t problem = 0;           ///< the planning problem's id

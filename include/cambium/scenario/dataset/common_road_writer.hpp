@@ -6,7 +6,7 @@
 
 namespace cambium {
 
-/// What the head of a CommonRoad file says.
+/// The head of a CommonRoad file.
 struct CommonRoadHeader {
   std::string benchmark_id{};  ///< such as "ZAM_Merge-1_1_T-1"; empty: the recording's name
   std::string author{}, affiliation{};

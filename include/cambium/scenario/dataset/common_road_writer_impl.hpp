@@ -17,6 +17,7 @@
 #include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/common_road_writer.hpp"
+#include "cambium/scenario/dataset/detail/common_road_lanes.hpp"
 
 namespace cambium {
 
@@ -119,6 +120,7 @@ class CommonRoadWriter {
 
   /// Ids for each different sign and light; those of lights are their names where these are numbers.
   void collect_signs() {
+    auto const lanelets = used_;
     for (auto const& track : traffic_.tracks) used_.insert(track.id);
     for (auto const& problem : traffic_.problems) used_.insert(problem.id);
     for (auto const& lanelet : lanelets_) {
@@ -127,18 +129,15 @@ class CommonRoadWriter {
         if (signal.kind != map::SignalKind::light)
           add_sign(sign_of(signal.kind));
         else if (!lights_.contains(signal.light))
-          lights_.emplace(signal.light, light_id(signal.light));
+          lights_.emplace(signal.light, unused(map::xml::parse_number<Id>(signal.light).value_or(0)));
     }
-    for (auto const& track : traffic_.tracks) used_.erase(track.id);
-    for (auto const& problem : traffic_.problems) used_.erase(problem.id);
-    for (auto const& lanelet : lanelets_) used_.insert(lanelet.id);
+    used_ = lanelets;
     for (auto const& [sign, id] : signs_) used_.insert(id);
     for (auto const& [light, id] : lights_) used_.insert(id);
   }
   void add_sign(Sign const& sign) {
     if (!signs_.contains(sign)) signs_.emplace(sign, fresh());
   }
-  [[nodiscard]] Id light_id(std::string const& name) { return unused(map::xml::parse_number<Id>(name).value_or(0)); }
 
   void write_lanelet(map::Lanelet const& lanelet) {
     text_.element("lanelet", [&] {
@@ -150,14 +149,9 @@ class CommonRoadWriter {
       if (lanelet.left_neighbor) write_neighbor("adjacentLeft", *lanelet.left_neighbor);
       if (lanelet.right_neighbor) write_neighbor("adjacentRight", *lanelet.right_neighbor);
       write_stop_line(lanelet);
-      char const* word = "unknown";
-      if (lanelet.type == map::LaneType::shoulder) word = "shoulder";
-      if (lanelet.type == map::LaneType::sidewalk) word = "sidewalk";
-      if (lanelet.type == map::LaneType::walking) word = "crosswalk";
-      if (lanelet.type == map::LaneType::bus) word = "busLane";
-      if (lanelet.type == map::LaneType::biking) word = "bicycleLane";
-      if (lanelet.type == map::LaneType::on_ramp) word = "accessRamp";
-      if (lanelet.type == map::LaneType::off_ramp) word = "exitRamp";
+      std::string_view word = "unknown";
+      for (auto const& [name, type] : common_road_lane_types)
+        if (lanelet.type == type) word = name;
       leaf("laneletType", word);
       if (lanelet.in_junction) leaf("laneletType", "intersection");
       leaf(lanelet.both_directions ? "userBidirectional" : "userOneWay", "vehicle");

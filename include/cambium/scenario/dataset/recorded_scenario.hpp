@@ -44,7 +44,7 @@ struct RecordingWindow {
 /// One window per track that moves, from its begin to its end: scenarios by ego.
 [[nodiscard]] std::vector<RecordingWindow> ego_windows(RecordedTraffic const& traffic);
 
-/// How a track goes over a map: along lanes, or where it leaves them (and on foot) along a way of its own.
+/// The way of a track over a map: along lanes, or, where it leaves them and on foot, along a free corridor.
 struct TrackWay {
   std::optional<map::Route> route{};                ///< its lanes, and straight on for 100 m
   map::LaneStation end{};                           ///< where the track ends; only with a route
@@ -59,8 +59,8 @@ struct TrackWay {
 [[nodiscard]] std::optional<TrackWay> way_of(Map const& map, Track const& track, double begin, double end);
 
 /// A scenario from a recording: its time 0 is `begin` of the recording. Replays (`StaticTrajectory`) are all there from
-/// the start and show up in traffic when their recording begins; whoever drives himself and comes later has to be let
-/// in: call `enter` before each step.
+/// the start and show up in traffic when their recording begins. An agent with a behaviour of its own that comes later
+/// is added by `enter`: call it before each step.
 template <class WorldType>
 struct RecordedScenario {
   /// An agent that comes later: where its track is then, it enters.
@@ -72,7 +72,7 @@ struct RecordedScenario {
 
   Scenario<WorldType> scenario;
   std::vector<Entrant> later{};              ///< by time
-  std::vector<geometry::Polygon> objects{};  ///< what stands
+  std::vector<geometry::Polygon> objects{};  ///< obstacles that stand
   double begin = 0.0, end = 0.0;             ///< of the recording [s]
   std::vector<Diagnostic> diagnostics{};     ///< tracks that could not take part, or not on lanes
 
@@ -85,8 +85,8 @@ struct RecordedScenario {
     return world;
   }
 
-  /// Lets in those of `later` whose time has come, but for the first `entered`, which are in already; returns how many
-  /// are in then. Throws what `World::add` throws.
+  /// Adds the agents of `later` whose time has come, except for the first `entered`, which are in the world already.
+  /// Returns how many of them are in the world then. Throws what `World::add` throws.
   [[nodiscard]] std::size_t enter(WorldType& world, std::size_t entered) const {
     constexpr double same_time = 1e-9;  // [s]
     for (; entered < later.size() && later[entered].time <= world.time() + same_time; ++entered) {
@@ -139,7 +139,7 @@ void require_replayable(RecordedTraffic const& traffic, RecordingWindow const& w
 
 }  // namespace detail
 
-/// The scenario of a window: who drives there, as the tracks say. `behavior_of(track)` returns an
+/// The scenario of a window with the agents of its tracks. `behavior_of(track)` returns an
 /// `std::optional<World::Behavior>`: the behaviour that replaces the driver of that track, from its recorded state on,
 /// with the recorded route and the end of the track's lane as its goal; nothing: the track is replayed. Agents have the
 /// ids of their tracks. Throws `Error` where the recording has no map, the window's ego is none of its tracks, or an id

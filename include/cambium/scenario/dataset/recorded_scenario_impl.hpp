@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <set>
 #include <span>
@@ -111,7 +110,7 @@ class LaneMatcher {
   return states;
 }
 
-/// A corridor along the states: for who does not keep to lanes.
+/// A corridor along the states, for tracks that leave the lanes.
 [[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> own_way(Map const& map, Track const& track,
                                                                       std::span<State const> states) {
   constexpr double apart = 0.5, beyond = 2.0;  // [m]

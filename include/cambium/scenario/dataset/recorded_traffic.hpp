@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +25,7 @@
 /// Recorded traffic, whatever data set or file it comes from.
 namespace cambium {
 
-/// What kind of road user a track is of.
+/// The kind of road user of a track.
 enum class TrackType : std::uint8_t { car, truck, bus, motorcycle, bicycle, pedestrian, other };
 
 /// The type as a word: "car".
@@ -87,7 +86,7 @@ struct Track {
   return reference;
 }
 
-/// What a planning problem wants of its ego: the middle of the body in one of `areas` (anywhere without one), heading
+/// A goal of a planning problem: the middle of the body in one of `areas` (anywhere without one), heading
 /// and speed within limits, at a time. As a goal of an agent it leaves the time out, which goals do not see.
 struct GoalState {
   std::vector<geometry::Polygon> areas{};                        ///< map frame
@@ -95,7 +94,7 @@ struct GoalState {
   double first_time = -std::numeric_limits<double>::infinity();  ///< [s]
   double last_time = std::numeric_limits<double>::infinity();    ///< [s]
 
-  /// Whether all but the time is as wanted.
+  /// Whether everything but the time is met.
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
     double const ahead = at.shape.center_offset();
     geometry::Point const middle{at.pose.x + ahead * std::cos(at.pose.heading),
@@ -104,7 +103,7 @@ struct GoalState {
                                     return area.contains(middle);
                                   }));
   }
-  /// As above, and `time` [s] is.
+  /// As above, and `time` [s] is within the goal's.
   [[nodiscard]] bool holds(GoalSituation const& at, double time) const {
     constexpr double rounding = 1e-6;  // [s]
     return time >= first_time - rounding && time <= last_time + rounding && at_goal(at);
@@ -131,13 +130,13 @@ struct PlanningProblem {
   State initial{};                 ///< of the middle of the body
   std::vector<GoalState> goals{};  ///< one of them suffices
 
-  /// The same as the goal of an agent; `NoGoal` without goals.
+  /// The goals as the goal of an agent; `NoGoal` without goals.
   [[nodiscard]] Goal goal() const;
 
   friend bool operator==(PlanningProblem const&, PlanningProblem const&) = default;
 };
 
-/// Tracks, and what else their file has.
+/// Tracks and the other contents of their file.
 struct RecordedTraffic {
   std::string name{};
   double time_step = 0.1;  ///< between two states [s]
@@ -147,7 +146,7 @@ struct RecordedTraffic {
   std::map<std::int64_t, LaneId> lanes{};  ///< by lanelet, of that map
   std::vector<map::LightPlan> lights{};    ///< of the map's first traffic lights
   std::vector<map::Lanelet> lanelets{};    ///< that the map was made of
-  std::vector<Diagnostic> diagnostics{};   ///< what was odd
+  std::vector<Diagnostic> diagnostics{};   ///< oddities of the file
 
   /// The track of that id. Throws `Error` where there is none. O(tracks).
   [[nodiscard]] Track const& track(std::int64_t id) const;

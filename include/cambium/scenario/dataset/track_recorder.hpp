@@ -12,7 +12,7 @@
 
 namespace cambium {
 
-/// The type of a body, by its size: what a world does not say.
+/// The type of a body by its size, because a world does not say it.
 [[nodiscard]] constexpr TrackType type_of_body(double length, double width) {
   if (length <= 1.0) return TrackType::pedestrian;
   if (width <= 0.7 && length <= 2.2) return TrackType::bicycle;

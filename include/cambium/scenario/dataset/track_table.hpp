@@ -9,17 +9,17 @@
 
 namespace cambium {
 
-/// Which point of a body a table gives.
+/// The point of a body whose place a table gives.
 enum class TrackAnchor : std::uint8_t {
   middle,        ///< of the body
   front_middle,  ///< of its front end
   corner,        ///< of its bounding box, the one with the least x and y: of pictures the upper left one
 };
 
-/// Which columns of a table say what, and in which units: a row per road user and time. Names are those of the first
-/// row; an empty name stands for a column that is not there. Needed are `id`, `time`, `x` and `y`.
+/// The columns of a table of tracks and their units; the table has a row for each road user and time. Names are those
+/// of the first row; an empty name means that the table has no such column. Needed are `id`, `time`, `x` and `y`.
 ///
-///     columns not there    instead
+///     without              instead
 ///     vx, vy, speed        from the places before and behind
 ///     heading              of the motion; standing, the last one
 ///     length, width        of a typical body of the type

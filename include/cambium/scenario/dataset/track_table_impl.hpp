@@ -132,24 +132,21 @@ class TrackTableReader {
   }
 
   [[nodiscard]] std::string_view cell(std::vector<std::string_view> const& cells, Column column) const {
-    if (!place_[column]) return {};
     if (*place_[column] >= cells.size())
       fail("it has " + std::to_string(cells.size()) + " cells, the first row " + std::to_string(columns_),
            "give each row the same columns");
     return cells[*place_[column]];
   }
 
-  [[nodiscard]] double number(std::vector<std::string_view> const& cells, Column column) const {
+  /// The number in a column; nothing where the table has no such column.
+  [[nodiscard]] std::optional<double> number(std::vector<std::string_view> const& cells, Column column) const {
+    if (!place_[column]) return std::nullopt;
     auto const word = cell(cells, column);
     auto const value = parse_number<double>(word);
     if (!value || std::abs(*value) > 1e15)
       fail("\"" + std::string(word) + "\" is no number that can be a place, a time or a size",
            "write numbers like 12.5, and leave rows without them out");
-    return *value;
-  }
-  [[nodiscard]] std::optional<double> given(std::vector<std::string_view> const& cells, Column column) const {
-    if (!place_[column]) return std::nullopt;
-    return number(cells, column);
+    return value;
   }
 
   /// The id: a whole number, or one behind a letter, as INTERACTION's "P3" of pedestrians.
@@ -183,7 +180,7 @@ class TrackTableReader {
     auto& read = read_[at->second];
     double const unit = table_.length_unit;
     auto const typical = typical_size(read.track.type);
-    auto const long_ = given(cells, length), wide = given(cells, width);
+    auto const long_ = number(cells, length), wide = number(cells, width);
     double const length_m = long_ ? *long_ * unit : typical.first, width_m = wide ? *wide * unit : typical.second;
     if (read.rows.empty()) {
       read.track.length = length_m;
@@ -192,19 +189,19 @@ class TrackTableReader {
       read.size_changes = true;
     }
     Row row{line_};
-    row.state.time = number(cells, time) * table_.time_unit;
-    auto const place = turned(number(cells, x) * unit, number(cells, y) * unit);
+    row.state.time = *number(cells, time) * table_.time_unit;
+    auto const place = turned(*number(cells, x) * unit, *number(cells, y) * unit);
     row.state.x = place.x();
     row.state.y = place.y();
-    if (auto const angle = given(cells, heading))
+    if (auto const angle = number(cells, heading))
       row.state.heading = table_.sideways ? *angle - 0.5 * geometry::pi : table_.mirrored ? -*angle : *angle;
     if (has_velocity()) {
-      auto const velocity = turned(number(cells, vx) * unit, number(cells, vy) * unit);
+      auto const velocity = turned(*number(cells, vx) * unit, *number(cells, vy) * unit);
       row.vx = velocity.x();
       row.vy = velocity.y();
       row.state.speed = std::hypot(row.vx, row.vy);
     }
-    if (auto const fast = given(cells, speed)) row.state.speed = *fast * unit;
+    if (auto const fast = number(cells, speed)) row.state.speed = *fast * unit;
     read.rows.push_back(row);
   }
 
@@ -253,7 +250,7 @@ class TrackTableReader {
     }
   }
 
-  /// Headings of the motion: by the velocity, else over half a metre or more; who stands keeps the last one.
+  /// Headings of the motion: by the velocity, else over half a metre or more; a standing body keeps its last one.
   void set_headings(std::vector<Row>& rows) const {
     constexpr double slow = 0.5, shortest = 0.5;  // [m/s], [m]
     std::vector<bool> known(rows.size());

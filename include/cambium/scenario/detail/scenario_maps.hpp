@@ -11,7 +11,6 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/json.hpp"
 #include "cambium/core/type_info.hpp"
-#include "cambium/geometry/oriented_box.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::detail {
@@ -49,19 +48,9 @@ class MapFiles {
   std::map<std::filesystem::path, std::shared_ptr<Map const>> maps_;
 };
 
-/// A body at the start of a scenario.
-struct StartingBody {
-  AgentId id;
-  geometry::Pose pose;
-  geometry::Shape shape;
-};
-
 /// Replaces the lanes of a struct: those of `map` by numbers of `table`, or the other way.
 void exchange_lanes(TypeInfo const& type, void* object, Map const& map, LaneTable const& table, bool to_map,
                     std::string const& where);
-
-/// Throws `WorldError` if two bodies overlap.
-void check_overlaps(std::vector<StartingBody> const& bodies, std::string const& where);
 
 }  // namespace cambium::detail
 

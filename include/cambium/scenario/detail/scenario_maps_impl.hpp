@@ -1,15 +1,10 @@
 #pragma once
 
-#include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
@@ -18,8 +13,6 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/core/type_info.hpp"
-#include "cambium/geometry/collision.hpp"
-#include "cambium/geometry/oriented_box.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/scenario/detail/scenario_maps.hpp"
@@ -97,18 +90,6 @@ CAMBIUM_COLD std::shared_ptr<Map const> MapFiles::load(std::filesystem::path con
     throw MapError(where, problem.what());
   }
   return map;
-}
-
-CAMBIUM_COLD void check_overlaps(std::vector<StartingBody> const& bodies, std::string const& where) {
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    for (std::size_t k = 0; k < i; ++k) {
-      auto const &a = bodies[i], &b = bodies[k];
-      double const reach = a.shape.length() + a.shape.width() + b.shape.length() + b.shape.width();
-      if (std::abs(a.pose.x - b.pose.x) > reach || std::abs(a.pose.y - b.pose.y) > reach) continue;
-      if (!geometry::intersects(geometry::box_of(a.shape, a.pose), geometry::box_of(b.shape, b.pose))) continue;
-      throw WorldError(where, "agents " + to_string(b.id) + " and " + to_string(a.id) + " overlap at the start",
-                       "move one of them");
-    }
 }
 
 }  // namespace cambium::detail

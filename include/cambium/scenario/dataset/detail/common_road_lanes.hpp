@@ -1,8 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,8 +7,6 @@
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include <pugixml.hpp>
 
 #include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/lanes/signals.hpp"
