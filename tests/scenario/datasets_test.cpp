@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>
@@ -30,6 +31,7 @@
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "../support/xml_damage.hpp"
+#include "message_of.hpp"
 
 using namespace cambium;
 
@@ -37,17 +39,6 @@ namespace {
 
 using Sim =
     World<BehaviorSet<StaticTrajectory, IdmClassic, Mobil, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
-
-/// The message of the `Error` that `run` throws.
-template <class Run>
-std::string message_of(Run const& run) {
-  try {
-    run();
-  } catch (Error const& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 std::string text_of(std::vector<Diagnostic> const& diagnostics) {
   std::string text;
@@ -157,11 +148,15 @@ TEST_CASE("INTERACTION's rows become tracks by time, in the order of their first
   CHECK(car.states[0] == State{0.1, 1.0, 2.0, 0.0, 5.0});
   CHECK(car.states[1].x == 1.5);
   CHECK(car.at(0.15).x == doctest::Approx(1.25));
+  CHECK(car.at(0.0) == car.states.front());
+  CHECK(car.at(0.3) == State{0.3, 2.0, 2.0, 0.0, 5.0});
+  CHECK(car.at(9.0) == car.states.back());
+  CHECK(traffic.begin() == 0.1);
+  CHECK(traffic.end() == 0.3);
   CHECK(traffic.time_step == doctest::Approx(0.1));
   CHECK(traffic.track(4).states[0].speed == -3.0);  // backwards
   CHECK(traffic.track(4).type == TrackType::truck);
-  CHECK(message_of([&] { (void)traffic.track(5); }) ==
-        "text: track 5: there is no such track; there are 3, 4");
+  CHECK(message_of([&] { return traffic.track(5); }) == "text: track 5: there is no such track; there are 3, 4");
 }
 
 TEST_CASE("pedestrians and cyclists have neither size nor heading: both follow from type and motion") {
@@ -207,10 +202,12 @@ TEST_CASE("highD's corners in pictures and NGSIM's feet become middles in metres
   CHECK(state.y == doctest::Approx(-18.0 * 0.3048));
   CHECK(state.heading == doctest::Approx(0.0));
   CHECK(state.speed == doctest::Approx(12.192));
+  CHECK(ngsim.track(2).length == doctest::Approx(4.572));
+  CHECK(ngsim.track(2).width == doctest::Approx(1.8288));
 }
 
 TEST_CASE("a malformed table is an error with its line and a remedy") {
-  auto const error = [](std::string const& text) { return message_of([&] { (void)read_tracks(text, {}, "a.csv"); }); };
+  auto const error = [](std::string const& text) { return message_of([&] { return read_tracks(text, {}, "a.csv"); }); };
   CHECK(error("") == "a.csv: it has no row; give a table whose first row names the columns");
   CHECK(error("id,x,y\n").find("a.csv:1: there is no column \"track_id\"; name") == 0);
   CHECK(error(replaced(table, "1.5,2,5", "1.5,two,5")).find("a.csv:2: \"two\" is no number") == 0);
@@ -220,7 +217,7 @@ TEST_CASE("a malformed table is an error with its line and a remedy") {
         0);
   CHECK(error(replaced(replaced(table, "4.2", "0"), "4.2", "0")).find("track 3: its length or width is not above 0") !=
         std::string::npos);
-  CHECK(message_of([] { (void)load_tracks("/nowhere.csv"); }).find("/nowhere.csv: the file cannot be opened") == 0);
+  CHECK(message_of([] { return load_tracks("/nowhere.csv"); }).find("/nowhere.csv: the file cannot be opened") == 0);
 }
 
 TEST_CASE("what is odd in a table is a finding") {
@@ -267,6 +264,10 @@ TEST_CASE("a CommonRoad scenario has lanes, limits, signs, lights, tracks and a 
   CHECK(traffic.lights[0].at(5.0) == map::LightColor::red);
   CHECK(traffic.lights[0].at(15.0) == map::LightColor::green);
   CHECK(traffic.lights[0].at(31.0) == map::LightColor::yellow);
+  auto const late = parse_common_road(replaced(common_road(), "<timeOffset>0", "<timeOffset>20"));
+  CHECK(late.lights[0].at(13.0) == map::LightColor::red);
+  CHECK(late.lights[0].at(33.0) == map::LightColor::green);
+  CHECK(recorded_scenario<Sim>(traffic, {.begin = 5.0}).scenario.lights[0].at(5.5) == map::LightColor::green);
   REQUIRE(traffic.tracks.size() == 2);
   CHECK(traffic.tracks[0].stands);
   CHECK(traffic.track(31).states.size() == 31);
@@ -316,12 +317,12 @@ TEST_CASE("uncertain values become their middles, shifted shapes their own, and 
 
 TEST_CASE("a malformed CommonRoad file is an error with file, line and remedy") {
   auto const error = [](std::string const& text) {
-    return message_of([&] { (void)parse_common_road(text, {}, "a.xml"); });
+    return message_of([&] { return parse_common_road(text, {}, "a.xml"); });
   };
   CHECK(error("<osm/>").find("a.xml:1: the root element is <osm>, not <commonRoad>; give") == 0);
   CHECK(error(replaced(common_road(), "timeStepSize='0.2'", "")).find("a.xml:2: timeStepSize is missing") == 0);
   CHECK(error(common_road().substr(0, 900)).find("a.xml:") == 0);
-  CHECK(message_of([] { (void)load_common_road("/nowhere.xml"); }).find("/nowhere.xml: the file") == 0);
+  CHECK(message_of([] { return load_common_road("/nowhere.xml"); }).find("/nowhere.xml: the file") == 0);
 }
 
 TEST_CASE("what is written as CommonRoad reads back the same, bit by bit") {
@@ -366,12 +367,16 @@ TEST_CASE("a run on an OpenDRIVE map is a CommonRoad scenario with its lanes, an
   auto const& s = world.state(AgentId{2});
   CHECK(was.states.back().x == doctest::Approx(s.x + geometry::car().center_offset() * std::cos(s.heading)));
   recorder.traffic().time_step = 0.3;
-  CHECK(message_of([&] { (void)common_road_text(recorder.traffic()); }).find("is no multiple of the time step") !=
+  CHECK(message_of([&] { return common_road_text(recorder.traffic()); }).find("is no multiple of the time step") !=
         std::string::npos);
 }
 
 TEST_CASE("a CommonRoad solution reads back the same, and its steering fits the curve") {
-  CommonRoadSolution solution{.benchmark_id = "ZAM_Own-1_1_T-1", .problem = 40, .time_step = 0.1};
+  CommonRoadSolution solution{.benchmark_id = "ZAM_Own-1_1_T-1",
+                              .problem = 40,
+                              .time_step = 0.1,
+                              .date = "2026-11-24T12:00:00",
+                              .computation_time = 1.5};
   double const radius = 30.0, speed = 6.0;
   for (int k = 0; k < 20; ++k) {
     double const angle = speed * 0.1 * k / radius;
@@ -383,17 +388,19 @@ TEST_CASE("a CommonRoad solution reads back the same, and its steering fits the 
   CHECK(again.problem == 40);
   CHECK(again.vehicle == 2);
   CHECK(again.states == solution.states);
+  CHECK(again.date == solution.date);
+  CHECK(again.computation_time == 1.5);
   auto const at = text.rfind("<steeringAngle>", text.size() / 2) + 15;
   CHECK(std::stod(text.substr(at)) == doctest::Approx(std::atan(2.578 / radius)).epsilon(1e-3));
   auto bad = solution;
   bad.states[5].time += 0.05;
-  CHECK(message_of([&] { (void)common_road_solution_text(bad); }).find("state 5 is not one time step after") !=
+  CHECK(message_of([&] { return common_road_solution_text(bad); }).find("state 5 is not one time step after") !=
         std::string::npos);
   bad = solution;
   bad.cost_function = "XX";
-  CHECK(message_of([&] { (void)common_road_solution_text(bad); }).find("cost function XX is unknown") !=
+  CHECK(message_of([&] { return common_road_solution_text(bad); }).find("cost function XX is unknown") !=
         std::string::npos);
-  CHECK(message_of([&] { (void)parse_common_road_solution("<CommonRoadSolution/>", 0.1); }).find("benchmark_id") !=
+  CHECK(message_of([&] { return parse_common_road_solution("<CommonRoadSolution/>", 0.1); }).find("benchmark_id") !=
         std::string::npos);
 }
 
@@ -416,6 +423,9 @@ TEST_CASE("replays end where they were recorded, come and go with their tracks, 
   CHECK(world.status(AgentId{7}) == AgentStatus::expired);
   for (auto const id : {7, 9, 11}) {
     CAPTURE(id);
+    auto const way = *way_of(*traffic.map, traffic.track(id), 1.0, 10.0);
+    CHECK(way.states.front().time == std::max(1.0, traffic.track(id).begin()));
+    CHECK(way.states.back() == reference_state(traffic.track(id).states.back(), reference_shape(traffic.track(id))));
     auto const &is = recorder.traffic().track(id), &was = traffic.track(id);
     CHECK(is.begin() + 1.0 == doctest::Approx(std::max(1.0, was.begin())));
     CHECK(is.states.size() >= 28);
@@ -490,6 +500,13 @@ TEST_CASE("a planning problem's ego has its start and goal, and reaches it among
       traffic, traffic.problems[0], Mobil{}, [](Track const&) -> std::optional<Sim::Behavior> { return std::nullopt; });
   auto const ego = recorded.scenario.ego;
   CHECK(ego == AgentId{40});
+  auto other = traffic.problems[0];
+  for (auto const& [wanted, given] : {std::pair{31, 32}, {-5, 0}}) {  // 31 is a track
+    other.id = wanted;
+    CHECK(problem_scenario<Sim>(traffic, other, Mobil{}, [](Track const&) {
+            return std::optional<Sim::Behavior>();
+          }).scenario.ego == AgentId(given));
+  }
   CHECK(recorded.duration() == doctest::Approx(12.0));
   auto world = recorded.make_world();
   CHECK(world.state(ego).x == doctest::Approx(10.0 - 1.35));
@@ -511,10 +528,10 @@ TEST_CASE("windows cover the recording, and each track has one") {
   auto const egos = ego_windows(traffic);
   REQUIRE(egos.size() == 3);
   CHECK(egos[1] == RecordingWindow{2.0, 10.0, 9});
-  CHECK(message_of([&] { (void)windows_of(traffic, 0.0, 1.0); }).find("give seconds") != std::string::npos);
-  CHECK(message_of([&] { (void)recorded_scenario<Sim>(traffic, {.ego = 99}); }).find("track 99, is not there") !=
+  CHECK(message_of([&] { return windows_of(traffic, 0.0, 1.0); }).find("give seconds") != std::string::npos);
+  CHECK(message_of([&] { return recorded_scenario<Sim>(traffic, {.ego = 99}); }).find("track 99, is not there") !=
         std::string::npos);
-  CHECK(message_of([] { (void)recorded_scenario<Sim>(RecordedTraffic{}); }).find("there is no map") !=
+  CHECK(message_of([] { return recorded_scenario<Sim>(RecordedTraffic{}); }).find("there is no map") !=
         std::string::npos);
 }
 

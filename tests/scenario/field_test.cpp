@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "../support/maps.hpp"
 #include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/behavior/presets.hpp"
+#include "cambium/benchmark/statistics.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
@@ -201,16 +201,8 @@ Gaps turn_in(double side, std::uint64_t seed) {
   return gaps;
 }
 
-double mean(std::vector<double> const& x) {
-  double sum = 0.0;
-  for (double const value : x) sum += value;
-  return sum / static_cast<double>(x.size());
-}
-
 double deviation(std::vector<double> const& x) {
-  double sum = 0.0;
-  for (double const value : x) sum += (value - mean(x)) * (value - mean(x));
-  return std::sqrt(sum / static_cast<double>(x.size()));
+  return std::sqrt(detail::Moments(x).square / static_cast<double>(x.size()));
 }
 
 /// Speed [km/h] at a density [cars/km/lane] of a motorway with a free speed of 120 km/h, where the levels of service
@@ -231,13 +223,13 @@ TEST_CASE(
     auto const s = drive_highway(per_hour, 5);
     MESSAGE("demand ", per_hour, " 1/h/lane: flow ", s.flow, ", density ", s.density, " 1/km/lane, speed ", s.speed,
             " km/h (manual: ", manual_speed(s.density), "), lane changes ", s.lane_changes, " 1/km, ",
-            s.followers.size(), " followers, headway ", mean(s.followers), " s, standard deviation ",
+            s.followers.size(), " followers, headway ", mean_of(s.followers), " s, standard deviation ",
             deviation(s.followers), " s");
     CHECK(s.speed < before);
     CHECK(std::abs(s.speed / manual_speed(s.density) - 1.0) < 0.3);
     CHECK(s.lane_changes > 0.25);  // Knoop et al. 2012: 0.5
     CHECK(s.lane_changes < 1.0);
-    CHECK(mean(s.followers) < 3.0);  // Wasielewski 1979: 1.32 s
+    CHECK(mean_of(s.followers) < 3.0);  // Wasielewski 1979: 1.32 s
     before = s.speed;
   }
 }

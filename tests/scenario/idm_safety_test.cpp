@@ -1,15 +1,10 @@
 // IDM on a single lane from safe gaps does not collide: a property, over thousands of sampled scenarios.
 #include <doctest/doctest.h>
 
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "../world/fixtures.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/scenario/lane_traffic.hpp"
+#include "platoon.hpp"
 
 using namespace fixtures;
 
@@ -29,40 +24,23 @@ struct Course {
   double hardest = 0.0;   ///< braking [m/s^2]
 };
 
-double between(double low, double high, cb::RandomStream& random) { return low + (high - low) * cb::uniform01(random); }
-
-/// Sampled traffic of about 8 vehicles on the only lane of `empty`.
-std::vector<cb::LaneVehicle> sample_traffic(cb::RandomStream& random) {
-  cb::LaneTraffic traffic;
-  traffic.begin = 20.0;
-  traffic.end = 270.0;
-  // From town to country road, from dense to loose.
-  double const free_speed = between(8.0, 30.0, random);
-  traffic.speed = cb::Uniform{between(0.0, 0.8, random) * free_speed, free_speed};
-  traffic.desired_speed = cb::Uniform{0.85 * free_speed, 1.15 * free_speed};
-  traffic.headway = cb::Uniform{0.8, between(0.8, 2.5, random)};
-  return traffic.sample(random);
-}
-
-/// Puts an obstacle across the lane at `s`.
-void block(Sim& world, cb::map::LaneCorridor const& corridor, double s) {
-  auto const pose = corridor.center.pose(s);
-  world.add_object(cb::geometry::polygon_of(cb::geometry::box_of(cb::geometry::Shape{1.0, 0.0, 1.0, 1.0}, pose)));
-}
-
+/// About 8 vehicles.
 Sim sample(Sim const& empty, cb::map::LaneCorridor const& corridor, Ahead ahead, cb::RandomStream& random) {
   Sim world = empty;
-  auto const vehicles = sample_traffic(random);
+  auto const vehicles = draw_platoon(random, 270.0).traffic.sample(random);
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     auto const& v = vehicles[i];
     auto const pose = corridor.center.pose(v.s);
     Sim::AgentSpec spec{
         .position = pose.position(), .heading = pose.heading, .speed = v.speed, .shape = v.shape, .behavior = v.driver};
     if (i == 0 && ahead == Ahead::brakes)
-      spec.behavior = cb::ConstantAcceleration{.acceleration = between(v.driver.lowest_acceleration, -0.5, random)};
-    if (i == 0 && ahead == Ahead::obstacle)
-      block(world, corridor,
-            v.s + v.shape.front + cb::LaneTraffic::safe_gap(v.driver, v.speed, 0.0, between(0.8, 3.0, random)));
+      spec.behavior = cb::ConstantAcceleration{.acceleration = cb::Uniform{v.driver.lowest_acceleration, -0.5}(random)};
+    if (i == 0 && ahead == Ahead::obstacle) {
+      double const headway = cb::Uniform{0.8, 3.0}(random);
+      auto const at = v.s + v.shape.front + cb::LaneTraffic::safe_gap(v.driver, v.speed, 0.0, headway);
+      world.add_object(cb::geometry::polygon_of(
+          cb::geometry::box_of(cb::geometry::Shape{1.0, 0.0, 1.0, 1.0}, corridor.center.pose(at))));
+    }
     world.add(spec);
   }
   return world;

@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -113,26 +112,33 @@ void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& na
 
 }  // namespace
 
-TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, vans and trucks") {
-  for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
-    check_all_pass(support::own_map(name), name, support::runs(1000));
-}
-
-TEST_CASE("so it is at shorter and longer steps, with a third of trucks where these fit") {
-  for (char const* name : {"roundabout.xodr", "intersection_3way.xodr", "intersection_4way.xodr"})
-    for (double const dt : {0.1, 0.5})
-      check_all_pass(support::own_map(name), name, support::runs(150),
-                     {.mix = {.truck_share = 0.35, .van_share = 0.15}}, dt);
-}
-
-TEST_CASE("so it is with up to 30 vehicles, as many as fit before the junctions, at shorter and longer steps") {
-  JunctionTraffic const dense{.most_vehicles = 30};
-  for (double const dt : {0.1, 0.5}) {
-    for (char const* name : {"roundabout.xodr", "intersection_3way.xodr", "intersection_4way.xodr"})
-      check_all_pass(support::own_map(name), name, support::runs(100), dense, dt);
-    for (std::string const name : {"simple_3way_intersection_lht", "fabriksgatan", "route_strategy_test_road"})
-      if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, support::runs(50), dense, dt);
+TEST_CASE("nobody collides, waits forever or crosses a stop line on red in sampled traffic") {
+  JunctionTraffic const many_trucks{.mix = {.truck_share = 0.35, .van_share = 0.15}}, dense{.most_vehicles = 30},
+      bicycles{.mix = {.truck_share = 0.15, .van_share = 0.15, .bicycle_share = 0.3}};
+  for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"}) {
+    auto const map = support::own_map(name);
+    check_all_pass(map, name, support::runs(1000));
+    check_all_pass(map, name + std::string(" with bicycles"), support::runs(1000), bicycles);
+    for (double const dt : {0.1, 0.5}) {
+      check_all_pass(map, name + std::string(" with a third of trucks"), support::runs(150), many_trucks, dt);
+      check_all_pass(map, name + std::string(" with 30 vehicles"), support::runs(100), dense, dt);
+    }
   }
+  auto const map = support::own_map("intersection_4way.xodr");
+  REQUIRE(map->lights().size() == 2);
+  check_all_pass(map, "intersection_4way.xodr with lights", support::runs(1000), {.lights = true});
+}
+
+TEST_CASE("so it is at the junctions of the corpus") {
+  for (std::string const name : {"simple_3way_intersection_lht", "multi_intersections", "route_strategy_test_road",
+                                 "parking_demo", "4way_intersection", "threeway_intersection", "fabriksgatan"})
+    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, support::runs(60));
+  for (std::string const name : {"libopendrive_test", "Town04"})
+    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, support::runs(20));
+  for (std::string const name : {"simple_3way_intersection_lht", "fabriksgatan", "route_strategy_test_road"})
+    for (double const dt : {0.1, 0.5})
+      if (auto const map = support::corpus_map(name + ".xodr"))
+        check_all_pass(map, name, support::runs(50), {.most_vehicles = 30}, dt);
 }
 
 // Each gridlocked: three drivers left their places to wait in one step (run 48), or passed places so far before the
@@ -151,26 +157,6 @@ TEST_CASE("no three vehicles block each other for good that leave their places t
   CAPTURE(tally.first);
   CHECK(tally.collisions == 0);
   CHECK(tally.stuck == 0);
-}
-
-TEST_CASE("the same holds under traffic lights, and nobody crosses a stop line on red") {
-  auto const map = support::own_map("intersection_4way.xodr");
-  REQUIRE(map->lights().size() == 2);
-  check_all_pass(map, "intersection_4way.xodr with lights", support::runs(1000), {.lights = true});
-}
-
-TEST_CASE("so it is among bicycles, which keep to the side of their lanes, in sampled traffic") {
-  for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
-    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), support::runs(1000),
-                   {.mix = {.truck_share = 0.15, .van_share = 0.15, .bicycle_share = 0.3}});
-}
-
-TEST_CASE("so it is at the junctions of the corpus") {
-  for (std::string const name : {"simple_3way_intersection_lht", "multi_intersections", "route_strategy_test_road",
-                                 "parking_demo", "4way_intersection", "threeway_intersection", "fabriksgatan"})
-    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, support::runs(60));
-  for (std::string const name : {"libopendrive_test", "Town04"})
-    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, support::runs(20));
 }
 
 TEST_CASE("who reaches the end of its route sees a vehicle beyond it that still reaches back") {

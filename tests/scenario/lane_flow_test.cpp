@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../support/maps.hpp"
+#include "message_of.hpp"
 
 using namespace cambium;
 
@@ -27,12 +28,7 @@ std::vector<Scenario<Sim>> drawn(std::string const& map, std::vector<Flow> flows
 }
 
 std::string refusal(std::string const& map, std::vector<Flow> flows) {
-  try {
-    static_cast<void>(drawn(map, std::move(flows), 1));
-  } catch (Error const& error) {
-    return error.what();
-  }
-  return "accepted";
+  return message_of([&] { return drawn(map, std::move(flows), 1); });
 }
 
 LaneId highway_lane(int number) { return support::own_map("highway.xodr")->find_lane("1", 0.0, number); }

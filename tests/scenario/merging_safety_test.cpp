@@ -18,8 +18,8 @@
 #include "cambium/behavior/lane_change/zip_merge.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/scenario/merging_site.hpp"
+#include "platoon.hpp"
 
 using namespace cambium;
 
@@ -72,13 +72,7 @@ TEST_CASE_TEMPLATE(
     double slowest = 100.0;
     for (std::uint32_t number = 0; number < support::runs(150); ++number) {
       RandomStream random(21, number, 0);
-      double const free_speed = Uniform{8.0, 30.0}(random);
-      LaneTraffic const traffic{.begin = 20.0,
-                                .end = 320.0,
-                                .speed = Uniform{Uniform{0.0, 0.8}(random)*free_speed, free_speed},
-                                .desired_speed = Uniform{0.85 * free_speed, 1.15 * free_speed},
-                                .headway = Uniform{0.8, Uniform{0.8, 2.5}(random)},
-                                .mix = {.truck_share = 0.35}};
+      auto const [free_speed, traffic] = draw_platoon(random, 320.0, {.truck_share = 0.35});
       Sim world(map);
       for (auto const& vehicle : traffic.sample(random)) {
         typename Sim::AgentSpec spec{.position = {vehicle.s, -1.75}, .speed = vehicle.speed, .shape = vehicle.shape};

@@ -7,50 +7,46 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <utility>
 #include <variant>
-#include <vector>
 
 #include "../support/maps.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/off_road.hpp"
-#include "cambium/map/building/map_builder.hpp"
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/merging_site.hpp"
+#include "figure.hpp"
 
 using namespace cambium;
 
 namespace {
 
-template <class SiteType>
+template <class Site>
 struct Found;
-
 template <>
 struct Found<MergingSite> {
   static constexpr char const *own_map = "merging.xodr", *unfit = "highway.xodr";
-  static MergingSite on(std::shared_ptr<Map const> map, std::string const& where) {
-    return find_merging_site(std::move(map), where);
-  }
+  static constexpr double figure = 1277206.1906;
+  static constexpr auto on = find_merging_site;
 };
-
 template <>
 struct Found<HighwaySite> {
   static constexpr char const *own_map = "highway_exit.xodr", *unfit = "roundabout.xodr";
-  static HighwaySite on(std::shared_ptr<Map const> map, std::string const& where) {
-    return find_highway_site(std::move(map), where);
-  }
+  static constexpr double figure = 950514.1767;
+  static constexpr auto on = find_highway_site;
 };
-
 template <>
 struct Found<JunctionSite> {
   static constexpr char const *own_map = "intersection_4way.xodr", *unfit = "highway.xodr";
-  static JunctionSite on(std::shared_ptr<Map const> map, std::string const& where) {
-    return find_junction_site(std::move(map), where);
-  }
+  static constexpr double figure = 65790.1069;
+  static constexpr auto on = find_junction_site;
 };
+
+template <class Site>
+Site own_site() {
+  return Found<Site>::on(support::own_map(Found<Site>::own_map), "map");
+}
 
 /// All that a step can depend on, in the bits of the numbers.
 template <class World>
@@ -69,20 +65,11 @@ std::string text_of(World const& world) {
   return text;
 }
 
-/// A straight road of `lanes` lanes, too short for traffic.
-std::shared_ptr<Map const> short_road(double length, std::size_t lanes) {
-  map::MapBuilder builder("short");
-  builder.add_road({.id = "1",
-                    .line = map::lay_from({}, {{length, 0.0, 0.0}}),
-                    .sections = {{.right = map::equal_lanes(lanes, 3.5)}}});
-  return builder.build();
-}
-
 }  // namespace
 
 TEST_CASE_TEMPLATE("a seed and a number give one situation, others another", Site, MergingSite, HighwaySite,
                    JunctionSite) {
-  auto const site = Found<Site>::on(support::own_map(Found<Site>::own_map), "map");
+  auto const site = own_site<Site>();
   auto const text = [&](std::uint64_t seed, std::uint32_t number) {
     return text_of(site.sample(seed, number).make_world());
   };
@@ -91,11 +78,14 @@ TEST_CASE_TEMPLATE("a seed and a number give one situation, others another", Sit
   CHECK(text(3, 5) == first);
   CHECK(text(3, 6) != first);
   CHECK(text(4, 5) != first);
+  double figure = 0.0;
+  for (std::uint32_t number = 0; number < 5; ++number) figure += figure_of(site.sample(3, number));
+  CHECK(figure == doctest::Approx(Found<Site>::figure).epsilon(1e-8));  // on every platform
 }
 
 TEST_CASE_TEMPLATE("a sampled situation begins without contact, on the road, with an ego among others", Site,
                    MergingSite, HighwaySite, JunctionSite) {
-  auto const site = Found<Site>::on(support::own_map(Found<Site>::own_map), "map");
+  auto const site = own_site<Site>();
   std::size_t agents = 0;
   for (std::uint32_t number = 0; number < 50; ++number) {
     CAPTURE(number);
@@ -118,7 +108,7 @@ TEST_CASE_TEMPLATE("a sampled situation begins without contact, on the road, wit
 TEST_CASE_TEMPLATE("another world takes the same situation with behaviours of its own", Site, MergingSite, HighwaySite,
                    JunctionSite) {
   using Other = World<BehaviorSet<ConstantAcceleration>, InterpolateExecution, SingleTrack>;
-  auto const site = Found<Site>::on(support::own_map(Found<Site>::own_map), "map");
+  auto const site = own_site<Site>();
   auto const scenario = site.sample(1, 2);
   std::size_t asked = 0;
   auto const other = with_behaviors<Other>(scenario, [&](auto const& agent) {
@@ -146,18 +136,17 @@ TEST_CASE_TEMPLATE("another world takes the same situation with behaviours of it
 
 TEST_CASE_TEMPLATE("a map without such a place, or no map, is an error that names the file and the remedy", Site,
                    MergingSite, HighwaySite, JunctionSite) {
-  using Finding = Found<Site>;
-  CHECK_THROWS_WITH_AS(static_cast<void>(Finding::on(support::own_map(Finding::unfit), "my.xodr")),
-                       doctest::Contains("my.xodr"), MapError);
-  CHECK_THROWS_WITH_AS(static_cast<void>(Finding::on(support::own_map(Finding::unfit), "my.xodr")),
-                       doctest::Contains("give a map"), MapError);
-  CHECK_THROWS_WITH_AS(static_cast<void>(Finding::on(nullptr, "my.xodr")), doctest::Contains("there is no map"),
-                       MapError);
-  CHECK_THROWS_AS(static_cast<void>(Finding::on(short_road(30.0, 2), "short")), MapError);
+  auto const refused = [](std::shared_ptr<Map const> const& map, char const* words) {
+    CHECK_THROWS_WITH_AS(Found<Site>::on(map, "my.xodr"), doctest::Contains(words), MapError);
+  };
+  refused(support::own_map(Found<Site>::unfit), "my.xodr");
+  refused(support::own_map(Found<Site>::unfit), "give a map");
+  refused(nullptr, "there is no map");
+  refused(support::straight_road(2, 30.0), "my.xodr");
 }
 
 TEST_CASE("vehicles on the ramp have the lane behind the merge as their goal, and the ego is one of them") {
-  auto const site = find_merging_site(support::own_map("merging.xodr"));
+  auto const site = own_site<MergingSite>();
   auto const& ramp = site.entrances[site.ramp];
   CHECK(ramp.merges());
   CHECK(ramp.gives_up_lane);
@@ -172,7 +161,7 @@ TEST_CASE("vehicles on the ramp have the lane behind the merge as their goal, an
 }
 
 TEST_CASE("traffic at junctions has the shares that are asked for, and lights in turn") {
-  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
+  auto const site = own_site<JunctionSite>();
   auto const count = [&](JunctionTraffic const& traffic, geometry::Shape const& shape) {
     std::size_t found = 0;
     for (std::uint32_t number = 0; number < 50; ++number)
@@ -191,8 +180,8 @@ TEST_CASE("traffic at junctions has the shares that are asked for, and lights in
   CHECK(color(1, 5.0) == map::LightColor::red);
   CHECK(color(0, 25.0) == map::LightColor::red);
   CHECK(color(1, 25.0) == map::LightColor::green);
-  CHECK_THROWS_WITH_AS(static_cast<void>(site.sample(5, 1, {.mix = {.truck_share = 1.5}})),
-                       doctest::Contains("truck_share"), ParameterError);
+  CHECK_THROWS_WITH_AS(site.sample(5, 1, {.mix = {.truck_share = 1.5}}), doctest::Contains("truck_share"),
+                       ParameterError);
 }
 
 TEST_CASE("traffic at junctions begins in the middle of its lanes, also where a lane opens behind its entrance") {
@@ -206,14 +195,14 @@ TEST_CASE("traffic at junctions begins in the middle of its lanes, also where a 
 }
 
 TEST_CASE("a scenario whose ego is missing or whose ids repeat makes no world") {
-  auto const site = find_highway_site(support::own_map("highway_exit.xodr"));
+  auto const site = own_site<HighwaySite>();
   auto scenario = site.sample(1, 1);
   scenario.ego = AgentId{4711};
-  CHECK_THROWS_WITH_AS(static_cast<void>(scenario.make_world()), doctest::Contains("4711"), WorldError);
+  CHECK_THROWS_WITH_AS(scenario.make_world(), doctest::Contains("4711"), WorldError);
   scenario.ego = none<AgentId>;
-  CHECK_NOTHROW(static_cast<void>(scenario.make_world()));
+  CHECK_NOTHROW(scenario.make_world());
   scenario.agents[1].id = *scenario.agents[0].id;
-  CHECK_THROWS_AS(static_cast<void>(scenario.make_world()), WorldError);
+  CHECK_THROWS_AS(scenario.make_world(), WorldError);
   scenario.map = nullptr;
-  CHECK_THROWS_WITH_AS(static_cast<void>(scenario.make_world()), doctest::Contains("there is no map"), WorldError);
+  CHECK_THROWS_WITH_AS(scenario.make_world(), doctest::Contains("there is no map"), WorldError);
 }

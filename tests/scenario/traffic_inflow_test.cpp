@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "../support/maps.hpp"
@@ -68,6 +68,13 @@ Tally drive(std::shared_ptr<Map const> const& map, double per_hour, double secon
 
 }  // namespace
 
+TEST_CASE("the safe speed behind a vehicle is that of Krauss") {
+  InflowRules const rules{.headway = 2.0, .minimum_gap = 2.0, .deceleration = 1.5};
+  CHECK(rules.safe_speed(1.9, 10.0) == -1.0);
+  CHECK(rules.safe_speed(2.0, 4.0) == 2.0);  // hypot(3, 4) - 3
+  CHECK(rules.safe_speed(14.0, 0.0) == doctest::Approx(std::sqrt(45.0) - 3.0));
+}
+
 TEST_CASE("a saturated lane fills to its capacity, and nobody who enters has to brake hard") {
   auto const road = support::straight_road(1, 600.0);
   for (double const dt : {0.05, 0.2, 0.5})
@@ -89,8 +96,11 @@ TEST_CASE("vehicles enter as often as a source demands, whatever the step, and t
     double const expected = 3 * 300.0 * hours;
     CHECK(std::abs(static_cast<double>(tally.entered) - expected) < 4.0 * std::sqrt(expected));
   }
-  CHECK(drive(road, 300.0, 600.0, 0.2, 4).speeds == drive(road, 300.0, 600.0, 0.2, 4).speeds);
-  CHECK(drive(road, 300.0, 600.0, 0.2, 4).speeds != drive(road, 300.0, 600.0, 0.2, 5).speeds);
+  auto const speeds = drive(road, 300.0, 600.0, 0.2, 4).speeds;
+  CHECK(drive(road, 300.0, 600.0, 0.2, 4).speeds == speeds);
+  CHECK(drive(road, 300.0, 600.0, 0.2, 5).speeds != speeds);
+  CHECK(std::accumulate(speeds.begin(), speeds.end(), 0.0) ==
+        doctest::Approx(2477.4).epsilon(1e-5));  // on every platform
 }
 
 TEST_CASE("nobody enters into a queue that has grown back to the source, and they wait there") {
