@@ -40,20 +40,24 @@
 ///     memory ({} at first) ------------'                |
 ///        ^------------------- report.memory ------------'
 ///
-/// The memory is a small value: the lane change under way, or what was learnt about others. The workspace only saves
+/// The memory is a small value: the lane change under way, or what it has learnt about others. The workspace only saves
 /// allocations, except after `MctsWorkspace::keep`: then the next search continues the tree.
 ///
 /// **Report** (`PlannerReport`). All candidates, the chosen one, how clearly it won, the course, and the memory for the
 /// next call. Every planner adds what only it knows.
 ///
+/// **Ring** (`candidate_planner.hpp`). What planners that compare a list of candidates share: prediction, budget, plan
+/// and report.
+///
 /// The folders: `search/` is tree search for any game and knows no traffic; `mcts/` makes a game of traffic
 /// (`TrafficDomain`); `policy/` simulates a list of candidates; `frenet/` samples polynomials. Start with
-/// `planner_model.hpp`, `search/search_domain.hpp` and `mcts/traffic_domain.hpp`.
+/// `planner_model.hpp`, `candidate_planner.hpp`, `search/search_domain.hpp` and `mcts/traffic_domain.hpp`.
 #pragma once
 
 // First: it says which language and flags cambium needs.
 #include "cambium/core/macros.hpp"
 
+#include "cambium/planner/candidate_planner.hpp"
 #include "cambium/planner/frenet/frenet_candidate.hpp"
 #include "cambium/planner/frenet/frenet_motion.hpp"
 #include "cambium/planner/frenet/frenet_planner.hpp"
@@ -64,7 +68,6 @@
 #include "cambium/planner/mcts/mcts_workspace.hpp"
 #include "cambium/planner/mcts/traffic_domain.hpp"
 #include "cambium/planner/mcts/traffic_reward.hpp"
-#include "cambium/planner/others_ahead.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/policy/policy_tree.hpp"
 #include "cambium/planner/policy/policy_tree_planner.hpp"

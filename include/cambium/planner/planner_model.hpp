@@ -46,22 +46,22 @@ struct PlannerReport {
   }
 };
 
+namespace detail {
+template <class World, class Memory>
+void is_report(PlannerReport<World, Memory> const&);
+}
+
 /// A planner: a behaviour that can also be called directly. `think(view, memory, workspace)` plans for the agent of
-/// `view` and reports the plan and its reasons. It is pure: pass the `memory` of the last report, or {} at first; the
-/// `workspace` only holds what is worth reusing, such as buffers. Its budget limits how long it takes (see
-/// `SearchBudget`). Throws `SearchError` if there is nothing to plan, and `ParameterError` if a parameter is out of
-/// range.
+/// `view` and returns a `PlannerReport`: the plan and its reasons. It is pure: pass the `memory` of the last report, or
+/// {} at first; the `workspace` only holds what is worth reusing, such as buffers. Its budget limits how long it takes
+/// (see `SearchBudget`). Throws `SearchError` if there is nothing to plan, and `ParameterError` if a parameter is out
+/// of range.
 template <class P, class View>
 concept PlannerModel = BehaviorModel<P> && std::default_initializable<typename P::Memory> &&
     std::default_initializable<typename P::Workspace> &&
     requires(P const planner, View const& view, typename P::Memory const& memory, typename P::Workspace& workspace) {
-  planner.think(view, memory, workspace).course;
-  planner.think(view, memory, workspace).agents;
+  detail::is_report(planner.think(view, memory, workspace));
   { planner.think(view, memory, workspace).memory } -> std::convertible_to<typename P::Memory>;
-  { planner.think(view, memory, workspace).candidates } -> std::convertible_to<std::vector<PlannerCandidate>>;
-  { planner.think(view, memory, workspace).chosen } -> std::convertible_to<std::optional<std::size_t>>;
-  { planner.think(view, memory, workspace).decidedness } -> std::convertible_to<double>;
-  { planner.think(view, memory, workspace).is_cut_short } -> std::convertible_to<bool>;
 };
 
 /// The lead of the chosen candidate's score over the best of the others that may be driven, as a share of the range of

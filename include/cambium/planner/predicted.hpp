@@ -26,12 +26,16 @@ namespace cambium {
 
 namespace detail {
 
-/// Whether a view can predict; `ViewArchetype` cannot.
-template <class View, class Set, class Other>
-concept Predicts = requires(View const view, Prediction<Set> const prediction) {
+/// Whether a view can predict worlds of type `World`; `ViewArchetype` cannot.
+template <class View, class World>
+concept Predicts = requires(View const view, Prediction<typename World::Behaviors> const prediction) {
   view.predict(prediction);
-  typename Other::FrameType;
+  typename World::FrameType;
 };
+
+/// Whether `World` is a world in which an agent may have that behaviour.
+template <class World, class Behavior>
+concept HasBehavior = is_world<World> && World::Behaviors::template contains<Behavior>;
 
 /// True. Else a compile error says what a planner's `PredictionWorld` lacks to predict behaviours `Others`.
 template <class PredictionWorld, class... Others>
@@ -40,7 +44,7 @@ template <class PredictionWorld, class... Others>
                 "cambium: a planner's PredictionWorld must be a cambium::World<BehaviorSet<...>, ...>; take "
                 "World::WithBehaviors<BehaviorSet<...>> of the world that it plans in");
   if constexpr (is_world<PredictionWorld>)
-    static_assert((PredictionWorld::Behaviors::template contains<Others> && ...),
+    static_assert((HasBehavior<PredictionWorld, Others> && ...),
                   "cambium: the behaviour set of a planner's PredictionWorld must contain its Others, the "
                   "model by which all agents but ego are predicted");
   return true;
@@ -98,6 +102,14 @@ template <class PredictionWorld, class Ego, class Others, class View>
 }
 
 namespace detail {
+/// To whom the records of a frame of `world` belong.
+template <class World>
+[[nodiscard]] std::vector<AgentId> ids_of(World const& world) {
+  std::vector<AgentId> ids;
+  for (auto const& agent : world.roster().agents) ids.push_back(agent.id);
+  return ids;
+}
+
 /// The desired speed of a driver, or of the driver that it wraps; null if it has none.
 template <class Driver>
 [[nodiscard]] auto* desired_speed_of(Driver& driver) {
@@ -111,7 +123,7 @@ template <class Driver>
     return static_cast<double*>(nullptr);
 }
 
-/// Whether an agent goes a way of its own beside the lanes or across, as on foot.
+/// Whether an agent moves beside or across the lanes on a path of its own, as pedestrians do.
 template <class World>
 [[nodiscard]] bool is_beside_lanes(World const& world, Slot slot) {
   return !is_valid(world.roster().agents[slot].road->corridors.front().pieces.front().lane);
@@ -137,7 +149,7 @@ template <class Record>
   return std::abs(seen.lane.heading_error) * seen.state.speed > 0.4;  // [m/s]
 }
 
-/// Whether an agent drives steadily although nothing ahead hinders it, so that it must like its speed.
+/// Whether an agent drives steadily on a free road, so that its speed must be the one it wants.
 template <class World>
 [[nodiscard]] bool likes_its_speed(World& world, Slot slot) {
   auto const& seen = world.frame().agents[slot];
@@ -146,11 +158,10 @@ template <class World>
   return !ahead || ahead->gap > 5.0 + 4.0 * seen.state.speed;  // [m], [s]
 }
 
-/// Lets those keep their speed who are faster than `others` want to drive, who drive steadily, or who are beside the
-/// lanes, as on foot: nobody is expected to slow down, or to speed up, for no reason. The speed is rounded to a whole
-/// m/s, so that small changes of speed do not change the prediction; beside the lanes it is not rounded. With `learns`,
-/// a planner that learns headways, only those count as steady whom nobody ahead hinders: a follower's speed shows the
-/// gap that it keeps. O(agents).
+/// Predicts that an agent keeps its speed if it is faster than `others` want to drive, drives steadily, or moves beside
+/// the lanes, as pedestrians do: nobody slows down or speeds up without a reason. On a lane, the speed is rounded to a
+/// whole m/s, so that small changes of speed do not change the prediction. `learns`: the planner learns headways, so an
+/// agent counts as steady only if nobody ahead hinders it; a follower's speed reveals the gap that it keeps. O(agents).
 template <class World, class Others>
 void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   auto* const desired = desired_speed_of(others);
@@ -169,8 +180,8 @@ void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   }
 }
 
-/// Lets those who brake go on to do so where `others` would keep their speed, if they drive in ego's direction: one who
-/// crosses its way may have right of way and not stop. O(agents).
+/// Predicts that vehicles which brake now and drive in ego's direction keep braking, where `others` would hold their
+/// speed. Crossing traffic is left out: it may have right of way and not stop. O(agents).
 template <class World, class Others>
 void expect_to_brake_on(World& world, Slot ego, Others others) {
   if constexpr (std::is_same_v<Others, ConstantAcceleration>) {
@@ -203,21 +214,6 @@ void go_straight_on(View const& view, double end, Plan<View>& plan) {
   plan.trajectory.push_back(state);
 }
 
-/// Steps `world` by `dt` [s] in equal steps of at most `step` [s] and records the agent at `slot` as `plan`.
-template <class World, class S>
-void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<S>& plan) {
-  auto const steps = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
-  double const begin = world.time();
-  for (int i = 0; i < steps; ++i) {
-    (void)world.step(dt / steps);
-    auto const& record = world.frame().agents[slot];
-    if (i == 0) plan.action = record.action;
-    plan.trajectory.push_back(record.state);
-    plan.trajectory.back().time = i + 1 == steps ? begin + dt : world.time();
-  }
-  plan.status = PlanStatus::valid;
-}
-
 /// Replaces the motion of the agent at `ego` in a predicted course of `world` by another one: `state_at(k)` is its
 /// state in frame k.
 template <class World, class F>
@@ -248,7 +244,7 @@ template <class World>
 }
 
 /// The agents with whom the agent at `ego` has to avoid contact: all but those behind it in the strip of road that it
-/// covers. Those have to keep clear themselves. O(agents).
+/// covers. Keeping clear of ego is their duty. O(agents).
 template <class World>
 void agents_to_avoid(World const& world, Slot ego, std::vector<Slot>& slots) {
   slots.clear();

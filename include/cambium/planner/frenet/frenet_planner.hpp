@@ -23,12 +23,10 @@
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/evaluation/off_road.hpp"
 #include "cambium/evaluation/terms.hpp"
-#include "cambium/planner/others_ahead.hpp"
-#include "cambium/planner/planner_model.hpp"
-#include "cambium/planner/predicted.hpp"
-#include "cambium/planner/search/search_budget.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/planner/candidate_planner.hpp"
 #include "cambium/planner/frenet/frenet_candidate.hpp"
-#include "cambium/planner/search/search_result.hpp"
+#include "cambium/planner/search/search_budget.hpp"
 
 namespace cambium {
 
@@ -50,36 +48,57 @@ struct FrenetMemory {
   friend bool operator==(FrenetMemory const&, FrenetMemory const&) = default;
 };
 
-/// What a `FrenetPlanner` reports. Its candidates are the courses; a score is a negative cost. It chooses the first
-/// valid one, or with `terms` the best of the valid ones. In the frames of the report's course, ego's memory is that of
-/// the start.
-template <class World>
-struct FrenetReport : PlannerReport<World, FrenetMemory> {
-  std::vector<FrenetCandidate> courses;  ///< cheapest first, without `terms`; all checked unless the budget ended
-};
-
 /// Plans by sampling courses in the Frenet frames of its lane and the lanes beside it. A course is a quintic polynomial
 /// across the lane and a quartic or quintic one along it, to one of several speeds or to a place behind the leader,
 /// over one of several durations. The planner drives the cheapest course that is drivable, stays on the road and keeps
 /// clear of the others, whose motion it predicts once as `Others`. If there is none, it brakes. `PredictionWorld` must
 /// have `Others` in its behaviour set. With own `terms`, all courses are checked, and the sum of the terms over a valid
 /// course is deducted from its cost.
+///
+/// The candidates of its report are the courses, cheapest first without `terms`; a score is a negative cost. In the
+/// frames of the report's course, ego's memory is that of the start.
 template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget,
           class Own = Terms<>>
 struct FrenetPlanner {
-  static_assert(detail::check_planner<PredictionWorld, Others>());
-  static_assert(detail::check_terms<Own>());
+  static_assert(detail::check_planner<PredictionWorld, Others>() && detail::check_terms<Own>());
 
+  using World = PredictionWorld;
   using Memory = FrenetMemory;
-  using Report = FrenetReport<PredictionWorld>;
+  using Report = CandidateReport<World, Memory, FrenetCandidate>;
 
-  struct Workspace {
-    OthersAhead<PredictionWorld> others;
-    std::vector<FrenetCandidate> candidates;
+  /// With a prediction of the other agents, made once, step by step. It does not depend on what ego does.
+  struct Workspace : CandidateWorkspace<World, FrenetCandidate> {
+    std::vector<typename World::FrameType> frames;  ///< now and after each step
+    std::vector<geometry::OrientedBox> boxes;       ///< of the agents in `to_avoid`, step by step
+    std::vector<Slot> to_avoid;                     ///< agents that ego has to keep clear of, see `agents_to_avoid`
     std::vector<FrenetTarget> targets;
-    typename PredictionWorld::FrameType frame;
-    Slot ego{};
-    bool is_cut_short = false;
+    typename World::FrameType frame;
+
+    /// Steps the world for `time` [s] in steps of `length` [s].
+    void predict_others(double time, double length) {
+      auto& predicted = *this->world;
+      agents_to_avoid(predicted, this->ego, to_avoid);
+      auto const steps = static_cast<std::size_t>(std::max(1L, std::lround(time / length)));
+      frames.resize(steps + 1);
+      boxes.clear();
+      for (std::size_t k = 0; k <= steps; ++k) {
+        if (k > 0) (void)predicted.step(length);
+        frames[k] = predicted.frame();
+        for (auto const i : to_avoid) {
+          auto box = box_at(predicted, i);
+          if (!in_traffic(predicted, i)) box.half_length = -1e9;  // touches nobody
+          boxes.push_back(box);
+        }
+      }
+    }
+
+    /// Whether `box` touches an object, or, after step `k`, an agent in `to_avoid`. O(agents + objects).
+    [[nodiscard]] bool touched(geometry::OrientedBox const& box, std::size_t k) const {
+      for (std::size_t i = 0; i < to_avoid.size(); ++i)
+        if (geometry::intersects(box, boxes[k * to_avoid.size() + i])) return true;
+      return std::ranges::any_of(this->world->roster().objects,
+                                 [&](auto const& object) { return geometry::intersects(box, object.outline); });
+    }
   };
 
   // Not lists in braces: g++ 12 takes these for uninitialised at -O2.
@@ -146,44 +165,83 @@ struct FrenetPlanner {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
-    Plan<View> plan;
-    plan.status = PlanStatus::failed;
-    if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
-      auto clock = budget;
-      clock.start();
-      if (sample(view, memory, workspace) != SearchProblem::none) return plan;
-      if (auto const chosen = choose(view, workspace, clock, has_terms))
-        return follow(view, workspace.candidates[*chosen], memory, dt);
-      memory = braking(view);
-      return brake(view, dt);
-    }
-    return plan;
+    return plan_by_candidates(*this, view, memory, dt, workspace);
   }
 
   /// See `PlannerModel`. Unlike `plan`, it checks all courses.
   template <class View>
   [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
-    check_parameters(*this);
-    auto clock = budget;
-    clock.start();
-    throw_if(sample(view, memory, workspace));
-    Report report;
-    report.chosen = choose(view, workspace, clock, true);
-    report.is_cut_short = workspace.is_cut_short;
-    for (auto const& candidate : workspace.candidates)
-      report.candidates.push_back({text(view, candidate), -candidate.cost,
-                                   candidate.verdict == FrenetVerdict::valid ? "" : to_string(candidate.verdict)});
-    report.decidedness = decidedness(report.candidates, report.chosen);
-    report.courses = workspace.candidates;
-    report.course = workspace.others.frames;
-    for (auto const& agent : workspace.others.world->roster().agents) report.agents.push_back(agent.id);
-    replace_course(*workspace.others.world, workspace.ego, report.course, [&](std::size_t k) {
+    return think_by_candidates(*this, view, memory, workspace);
+  }
+
+  /// See `CandidatePlanner`, as for the next ones. It chooses the first valid course, or with `terms` or for a report
+  /// the best of the valid ones.
+  template <class View>
+  [[nodiscard]] SearchProblem compare(View const& view, Memory const& memory, Workspace& workspace,
+                                      Budget& clock) const {
+    if (!workspace.predict(view, others, others)) return SearchProblem::not_in_world;
+    workspace.predict_others(horizon, step);
+    auto& candidates = workspace.candidates;
+    auto const& at = view.place();
+    auto const& piece = view.corridor().pieces[at.piece];
+    for (auto const number : {at.corridor, piece.left, piece.right})
+      if (number != none<CorridorId>) sample_lane(view, number, memory, workspace);
+    for (auto& candidate : candidates)
+      if (std::isnan(candidate.cost)) candidate.cost = std::numeric_limits<double>::infinity();
+    detail::stable_sort(candidates, &FrenetCandidate::cost);
+    bool const all = has_terms || workspace.shows_all;
+    auto& best = workspace.chosen;
+    for (std::size_t i = 0; i < candidates.size() && (all || !best) && workspace.goes_on(clock, i); ++i) {
+      candidates[i].verdict = verdict(view, candidates[i], workspace);
+      if (candidates[i].verdict != FrenetVerdict::valid) continue;
+      if constexpr (has_terms) {
+        candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
+        if (!std::isfinite(candidates[i].cost)) candidates[i].verdict = FrenetVerdict::not_finite;
+        if (candidates[i].verdict != FrenetVerdict::valid) continue;
+      }
+      if (!best || candidates[i].cost < candidates[*best].cost) best = i;
+    }
+    return SearchProblem::none;
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, double dt, Workspace const& workspace) const {
+    if (!workspace.chosen) {
+      memory = {static_cast<float>(view.state().speed > 0.0 ? limits.lowest_acceleration : 0.0), 0.0f};
+      return brake(view, dt);
+    }
+    auto const& candidate = workspace.candidates[*workspace.chosen];
+    Plan<View> plan;
+    int const parts = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
+    for (int i = 1; i <= parts; ++i) {
+      auto const driven = state_at(view, candidate, dt * i / parts);
+      plan.trajectory.push_back(driven.state);
+      memory = {static_cast<float>(driven.course.acceleration), static_cast<float>(driven.course.curvature)};
+    }
+    plan.action.acceleration = (plan.trajectory.front().speed - view.state().speed) * parts / dt;
+    return plan;
+  }
+
+  template <class View>
+  [[nodiscard]] auto foresee(View const& view, Memory const&, Workspace const& workspace) const {
+    auto course = workspace.frames;
+    replace_course(*workspace.world, workspace.ego, course, [&](std::size_t k) {
       double const time = static_cast<double>(k) * step;
-      return report.chosen ? state_at(view, report.courses[*report.chosen], time).state
-                           : brake(view, time).trajectory.back();
+      return workspace.chosen ? state_at(view, workspace.candidates[*workspace.chosen], time).state
+                              : brake(view, time).trajectory.back();
     });
-    report.memory = report.chosen ? memory_of(state_at(view, report.courses[*report.chosen], step)) : braking(view);
-    return report;
+    return course;
+  }
+
+  /// "follow in 3 s, 12 m/s at 0.7 m, left lane".
+  template <class View>
+  [[nodiscard]] PlannerCandidate entry(View const& view, Workspace const&, FrenetCandidate const& c) const {
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    std::string words = c.kind == FrenetCandidate::Kind::follow ? "follow" : "keep speed";
+    words += " in " + detail::rounded_text(c.duration) + " s, " + detail::rounded_text(c.speed) + " m/s at " +
+             detail::rounded_text(c.offset) + " m";
+    if (c.corridor != view.place().corridor) words += c.corridor == piece.left ? ", left lane" : ", right lane";
+    return {words, -c.cost, c.verdict == FrenetVerdict::valid ? "" : to_string(c.verdict)};
   }
 
  private:
@@ -203,47 +261,6 @@ struct FrenetPlanner {
     float bend = 0.0f;
     double const speed = std::max(0.0, view.state().speed);
     return plan_to_center(view, bend, ConstantAcceleration{limits.lowest_acceleration}.motion(speed, dt), dt);
-  }
-
-  /// The memory while it brakes.
-  template <class View>
-  [[nodiscard]] Memory braking(View const& view) const {
-    return {static_cast<float>(view.state().speed > 0.0 ? limits.lowest_acceleration : 0.0), 0.0f};
-  }
-
-  template <class State>
-  [[nodiscard]] static Memory memory_of(Driven<State> const& driven) {
-    return {static_cast<float>(driven.course.acceleration), static_cast<float>(driven.course.curvature)};
-  }
-
-  /// "follow in 3 s, 12 m/s at 0.7 m, left lane".
-  template <class View>
-  [[nodiscard]] static std::string text(View const& view, FrenetCandidate const& c) {
-    auto const& piece = view.corridor().pieces[view.place().piece];
-    std::string words = c.kind == FrenetCandidate::Kind::follow ? "follow" : "keep speed";
-    words += " in " + detail::rounded_text(c.duration) + " s, " + detail::rounded_text(c.speed) + " m/s at " +
-             detail::rounded_text(c.offset) + " m";
-    if (c.corridor != view.place().corridor) words += c.corridor == piece.left ? ", left lane" : ", right lane";
-    return words;
-  }
-
-  template <class View>
-  [[nodiscard]] SearchProblem sample(View const& view, Memory const& memory, Workspace& workspace) const {
-    std::optional<Slot> ego;
-    auto world = predicted_for<PredictionWorld>(view, others, others, ego);
-    if (!ego) return SearchProblem::not_in_world;
-    detail::expect_to_brake_on(world, *ego, others);
-    workspace.ego = *ego;
-    workspace.others.predict(std::move(world), *ego, horizon, step);
-    workspace.candidates.clear();
-    auto const& at = view.place();
-    auto const& piece = view.corridor().pieces[at.piece];
-    for (auto const number : {at.corridor, piece.left, piece.right})
-      if (number != none<CorridorId>) sample_lane(view, number, memory, workspace);
-    for (auto& candidate : workspace.candidates)
-      if (std::isnan(candidate.cost)) candidate.cost = std::numeric_limits<double>::infinity();
-    detail::stable_sort(workspace.candidates, &FrenetCandidate::cost);
-    return SearchProblem::none;
   }
 
   template <class View>
@@ -288,17 +305,23 @@ struct FrenetPlanner {
     for (double const share : speed_shares)
       targets.push_back({std::numeric_limits<double>::infinity(), share * fastest});
     if (auto const leader = view.ahead(view.place(number)))
-      targets.push_back(behind(workspace.others, *leader, at.s, duration));
+      targets.push_back(behind(workspace, *leader, at.s, duration));
     if (std::isfinite(stop)) targets.push_back({stop, 0.0});
   }
 
   /// The place and speed at which ego follows `leader` with the desired gap, `time` [s] from now.
-  [[nodiscard]] FrenetTarget behind(OthersAhead<PredictionWorld> const& ahead, RoadUser const& leader, double s,
-                                    double time) const {
+  [[nodiscard]] FrenetTarget behind(Workspace const& workspace, RoadUser const& leader, double s, double time) const {
     double const contact = s + leader.gap;
-    auto const slot = ahead.world->roster().slot_of(leader.agent);
+    auto const slot = workspace.world->roster().slot_of(leader.agent);
     if (!slot) return {contact - minimum_gap, 0.0};
-    auto const [way, speed] = ahead.way_of(*slot, time);
+    auto const& frames = workspace.frames;  // beyond the last one the leader keeps its speed
+    double way = 0.0, speed = frames[0].agents[*slot].state.speed, left = time;
+    for (std::size_t k = 1; k < frames.size() && left > 0.0; ++k, left -= step) {
+      double const next = frames[k].agents[*slot].state.speed;
+      way += 0.5 * (speed + next) * std::min(step, left);
+      speed = next;
+    }
+    way += speed * std::max(0.0, left);
     return {contact + way - minimum_gap - time_headway * speed, speed};
   }
 
@@ -320,17 +343,16 @@ struct FrenetPlanner {
   template <class View>
   [[nodiscard]] FrenetVerdict verdict(View const& view, FrenetCandidate const& candidate,
                                       Workspace const& workspace) const {
-    auto const& ahead = workspace.others;
     if (!std::isfinite(candidate.cost)) return FrenetVerdict::not_finite;
-    if (candidate.kind == FrenetCandidate::Kind::keep_speed && comes_too_near(view, candidate, ahead))
+    if (candidate.kind == FrenetCandidate::Kind::keep_speed && comes_too_near(view, candidate, workspace))
       return FrenetVerdict::gap;
-    auto record = ahead.frames[0].agents[workspace.ego];
+    auto record = workspace.frames[0].agents[workspace.ego];
     double const fastest = std::max(view.state().speed, 1.1 * desired_speed) + 0.1;
-    for (std::size_t k = 1; k < ahead.frames.size(); ++k) {
+    for (std::size_t k = 1; k < workspace.frames.size(); ++k) {
       auto const driven = state_at(view, candidate, static_cast<double>(k) * step);
       auto const verdict = drivable(limits, driven.course, driven.frenet, fastest);
       if (verdict != FrenetVerdict::valid) return verdict;
-      record = driven_to(*ahead.world, workspace.ego, record, driven.state);
+      record = driven_to(*workspace.world, workspace.ego, record, driven.state);
       if (record.status == AgentStatus::off_route) return FrenetVerdict::road;
       if (record.status == AgentStatus::driving &&
           (OffRoad::leaves(view.map(), view.road(), record.lane, record.state, view.shape()) ||
@@ -339,42 +361,20 @@ struct FrenetPlanner {
       auto box = geometry::box_of(view.shape(), driven.state);
       box.half_length += limits.clearance;
       box.half_width += limits.clearance;
-      if (ahead.touched(box, k)) return FrenetVerdict::collision;
+      if (workspace.touched(box, k)) return FrenetVerdict::collision;
     }
     return FrenetVerdict::valid;
-  }
-
-  /// The first valid course, or with `all` the best of the valid ones, as far as the clock permits.
-  template <class View>
-  [[nodiscard]] std::optional<std::size_t> choose(View const& view, Workspace& workspace, Budget& clock,
-                                                  bool all) const {
-    std::optional<std::size_t> best;
-    workspace.is_cut_short = false;
-    auto& candidates = workspace.candidates;
-    for (std::size_t i = 0; i < candidates.size() && (all || !best); ++i) {
-      workspace.is_cut_short = !clock.goes_on(i);
-      if (workspace.is_cut_short) break;
-      candidates[i].verdict = verdict(view, candidates[i], workspace);
-      if (candidates[i].verdict != FrenetVerdict::valid) continue;
-      if constexpr (has_terms) {
-        candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
-        if (!std::isfinite(candidates[i].cost)) candidates[i].verdict = FrenetVerdict::not_finite;
-        if (candidates[i].verdict != FrenetVerdict::valid) continue;
-      }
-      if (!best || candidates[i].cost < candidates[*best].cost) best = i;
-    }
-    return best;
   }
 
   /// The sum of the terms over a course; not finite if one of them is not.
   template <class View>
   [[nodiscard]] double sum_of_terms(View const& view, FrenetCandidate const& candidate, Workspace& workspace) const {
-    auto& world = *workspace.others.world;
-    auto record = workspace.others.frames[0].agents[workspace.ego];
+    auto& world = *workspace.world;
+    auto record = workspace.frames[0].agents[workspace.ego];
     double sum = 0.0;
-    for (std::size_t k = 1; k < workspace.others.frames.size(); ++k) {
+    for (std::size_t k = 1; k < workspace.frames.size(); ++k) {
       record = driven_to(world, workspace.ego, record, state_at(view, candidate, static_cast<double>(k) * step).state);
-      workspace.frame = workspace.others.frames[k];
+      workspace.frame = workspace.frames[k];
       workspace.frame.agents[workspace.ego] = record;
       world.restore(workspace.frame);
       auto const judged = terms.judge(world, workspace.ego, step);
@@ -387,25 +387,12 @@ struct FrenetPlanner {
   /// Whether the course ends nearer to the leader than following would, and the leader leaves no room to pass.
   template <class View>
   [[nodiscard]] bool comes_too_near(View const& view, FrenetCandidate const& candidate,
-                                    OthersAhead<PredictionWorld> const& ahead) const {
+                                    Workspace const& workspace) const {
     auto const leader = view.ahead(view.place(candidate.corridor));
     if (!leader) return false;
     double const s = view.place(candidate.corridor).s;
-    if (candidate.at(horizon).s <= behind(ahead, *leader, s, horizon).position) return false;
+    if (candidate.at(horizon).s <= behind(workspace, *leader, s, horizon).position) return false;
     return !leaves_room(view, candidate.corridor, *leader, candidate.offset, limits.clearance);
-  }
-
-  template <class View>
-  [[nodiscard]] Plan<View> follow(View const& view, FrenetCandidate const& candidate, Memory& memory, double dt) const {
-    Plan<View> plan;
-    int const parts = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
-    for (int i = 1; i <= parts; ++i) {
-      auto const driven = state_at(view, candidate, dt * i / parts);
-      plan.trajectory.push_back(driven.state);
-      memory = memory_of(driven);
-    }
-    plan.action.acceleration = (plan.trajectory.front().speed - view.state().speed) * parts / dt;
-    return plan;
   }
 };
 

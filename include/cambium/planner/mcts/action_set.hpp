@@ -208,19 +208,8 @@ template <class PredictionWorld>
 using UsualDriver = typename decltype(usual_others<PredictionWorld>())::type;
 
 /// What it chooses from unless told otherwise: macro actions, or to drive like the usual driver if the set permits.
-template <class PredictionWorld>
-[[nodiscard]] constexpr auto usual_actions() {
-  using Driving = DriverActions<UsualDriver<PredictionWorld>>;
-  constexpr bool has_it = [] {
-    if constexpr (is_world<PredictionWorld>)
-      return PredictionWorld::Behaviors::template contains<Driving>;
-    else
-      return false;
-  }();
-  return std::type_identity<std::conditional_t<has_it, Driving, MacroActions>>{};
-}
-template <class PredictionWorld>
-using UsualActions = typename decltype(usual_actions<PredictionWorld>())::type;
+template <class PredictionWorld, class Driving = DriverActions<UsualDriver<PredictionWorld>>>
+using UsualActions = std::conditional_t<HasBehavior<PredictionWorld, Driving>, Driving, MacroActions>;
 
 }  // namespace detail
 

@@ -11,6 +11,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/planner/search/selection_policy.hpp"
 
 namespace cambium {
 
@@ -88,13 +89,7 @@ class Belief {
   /// A hypothesis, drawn by its probability.
   template <BitStream Stream>
   [[nodiscard]] std::size_t sample(Stream& stream) const {
-    double left = uniform01(stream);
-    std::size_t h = 0;
-    for (; h + 1u < size_; ++h) {
-      left -= probability(h);
-      if (left < 0.0) break;
-    }
-    return h;
+    return detail::drawn(size_, stream, [&](std::size_t h) { return probability(h); });
   }
 
   static constexpr char const* name = "belief_about_agent";

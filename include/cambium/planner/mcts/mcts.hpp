@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -45,22 +46,11 @@ struct TrackedAgent {
   friend bool operator==(TrackedAgent const&, TrackedAgent const&) = default;
 };
 
-/// How it searches unless told otherwise: courses go on as a driver would, where the actions have one.
+/// Whether roll-outs follow a driver without any manoeuvre in mind.
 template <class Actions>
-[[nodiscard]] constexpr auto usual_options() {
-  if constexpr (requires { requires ActionSet<Actions>::usual_drives; })
-    return std::type_identity<MctsOptions<>>{};
-  else
-    return std::type_identity<MctsOptions<Puct, RandomRollout>>{};
-}
-
-template <class PredictionWorld, class Actions, class Reward, class Others>
-[[nodiscard]] constexpr auto search_domain() {
-  if constexpr (HypothesisModel<Others>)
-    return std::type_identity<HypothesisDomain<PredictionWorld, Actions, Reward, Others>>{};
-  else
-    return std::type_identity<TrafficDomain<PredictionWorld, Actions, Reward>>{};
-}
+concept UsuallyDrives = requires {
+  requires ActionSet<Actions>::usual_drives;
+};
 
 }  // namespace detail
 
@@ -103,8 +93,8 @@ struct BeliefMemory {
 /// - Cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016): `most_agents` above 1.
 ///   The agents nearest to ego choose at the same time, each for its own reward plus `cooperation` times the rewards of
 ///   the others; costs likewise, of which the greatest counts (also for a limit on them). Their goals are unknown, so
-///   the reward should hold what everybody wants, such as speed and no collision. Those whose intention shows do not
-///   choose: slow drivers on a free road, such as cyclists, whoever moves across its lane, and whoever is on foot.
+///   the reward should hold what everybody wants, such as speed and no collision. Agents with a plain intention do not
+///   choose: slow drivers on a free road, such as cyclists, agents that move across their lane, and pedestrians.
 /// - Search under a chance constraint (CC-POMCP: Lee et al. 2018): `options.search.constraint.limit` below 1. It
 ///   maximises the reward among courses whose estimated probability of a collision is within the limit; if there is
 ///   none, it minimises that probability. It learns the weight of a collision (a Lagrange multiplier), so the reward
@@ -115,7 +105,8 @@ struct BeliefMemory {
 ///   for each agent anew (root sampling: Silver, Veness 2010), so nodes stand for ego's actions only.
 template <class PredictionWorld, class Actions = detail::UsualActions<PredictionWorld>, class Reward = TrafficReward,
           class Others = detail::UsualDriver<PredictionWorld>,
-          class Options = typename decltype(detail::usual_options<Actions>())::type>
+          class Options =
+              std::conditional_t<detail::UsuallyDrives<Actions>, MctsOptions<>, MctsOptions<Puct, RandomRollout>>>
 struct Mcts {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(
@@ -126,9 +117,10 @@ struct Mcts {
   /// Whether it learns about the others.
   static constexpr bool learns = HypothesisModel<Others>;
 
-  using CourseMemory = detail::ActionMemory<Actions>;
+  using CourseMemory = typename ActionSet<Actions>::Behavior::Memory;  ///< such as a lane change under way
   using Memory = std::conditional_t<learns, BeliefMemory<CourseMemory>, CourseMemory>;
-  using Domain = typename decltype(detail::search_domain<PredictionWorld, Actions, Reward, Others>())::type;
+  using Domain = std::conditional_t<learns, HypothesisDomain<PredictionWorld, Actions, Reward, Others>,
+                                    TrafficDomain<PredictionWorld, Actions, Reward>>;
   using Workspace = MctsWorkspace<Domain, Options>;
   using Report = MctsReport<Domain, Memory>;
 
@@ -174,8 +166,14 @@ struct Mcts {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
-    return detail::plan_by_search<PredictionWorld>(
-        view, course_of(memory), workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
+    if constexpr (detail::Predicts<View, PredictionWorld>) {
+      auto const problem = search(view, memory, dt, workspace).problem;
+      if (problem == SearchProblem::none || problem == SearchProblem::terminal_root)
+        return workspace.drive(view, dt, course_of(memory));
+    }
+    Plan<View> failed;
+    failed.status = PlanStatus::failed;
+    return failed;
   }
 
   /// See `PlannerModel`. The report's course is the principal variation; after its end, all agents drive on without a
@@ -208,29 +206,33 @@ struct Mcts {
                                                                     Workspace& workspace) const {
     auto timed = options;
     timed.budget.start();
+    std::optional<Slot> ego;
+    auto world = predicted_for<PredictionWorld>(view, ActionSet<Actions>::behavior(actions), others, ego);
     std::vector<Slot> slots;
-    auto world = detail::world_to_search<PredictionWorld>(view, actions, course_of(memory), others, slots);
-    if (others_keep_speed && !slots.empty()) detail::expect_to_keep_speed(world, slots[0], others, learns);
-    if (most_agents > 1 && !slots.empty())
-      for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
-        if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over
-        if (is_slow_by_choice(world, slot) || detail::moves_across(world.frame().agents[slot]) ||
-            detail::is_beside_lanes(world, slot))
-          continue;
-        world.set_behavior(world.roster().agents[slot].id, ActionSet<Actions>::behavior(actions));
-        slots.push_back(slot);
-      }
+    if (ego) {
+      slots.push_back(*ego);
+      world.template memory<typename ActionSet<Actions>::Behavior>(view.id()) = course_of(memory);
+      if (others_keep_speed) detail::expect_to_keep_speed(world, *ego, others, learns);
+      if (most_agents > 1) let_others_choose(world, slots);
+    }
     double const weight = most_agents > 1 ? cooperation : 0.0;
-    auto const seed = view.random(detail::search_purpose)();
-    if constexpr (learns) {
-      std::vector<typename Domain::Unknown> unknowns;
-      if (!slots.empty()) unknowns = learn(world, slots[0], memory, dt);
-      Domain domain(std::move(world), slots, actions, reward, options.step, options.hold, weight);
-      domain.set_unknowns(unknowns, others);
-      return workspace.run(std::move(domain), timed, seed);
-    } else {
-      return workspace.run(Domain(std::move(world), slots, actions, reward, options.step, options.hold, weight), timed,
-                           seed);
+    constexpr std::uint32_t purpose = 0x3c75;
+    auto const seed = view.random(purpose)();
+    Domain domain(std::move(world), slots, actions, reward, options.step, options.hold, weight);
+    if constexpr (learns)
+      if (ego) domain.set_unknowns(learn(domain.world(), *ego, memory, dt), others);
+    return workspace.run(std::move(domain), timed, seed);
+  }
+
+  /// Adds those to `slots` who choose with ego.
+  void let_others_choose(PredictionWorld& world, std::vector<Slot>& slots) const {
+    for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
+      if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over
+      if (is_slow_by_choice(world, slot) || detail::moves_across(world.frame().agents[slot]) ||
+          detail::is_beside_lanes(world, slot))
+        continue;
+      world.set_behavior(world.roster().agents[slot].id, ActionSet<Actions>::behavior(actions));
+      slots.push_back(slot);
     }
   }
 

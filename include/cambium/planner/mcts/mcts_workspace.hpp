@@ -81,9 +81,9 @@ class MctsWorkspace {
   Result const& run(Domain domain, Options const& options, std::uint64_t seed) {
     if (!std::exchange(keeps_, false) || !domain.is_same_game(this->domain())) trees_.forget();
     auto const root = domain.root();
-    trees_.set(std::move(domain), options.search, options.selection, options.rollout, options.budget,
+    trees_.set(domain, options.search, options.selection, options.rollout, options.budget,
                static_cast<std::size_t>(options.threads));
-    return trees_.run_started(root, seed);
+    return trees_.run(root, seed);
   }
 
   /// Keeps the subtree below the best actions for the next `think`; returns whether there is one. Call it before the
@@ -143,6 +143,22 @@ class MctsWorkspace {
     }
   }
 
+  /// The plan for the next `dt` [s]: what ego does by the principal variation, and in `memory` its memory then. If its
+  /// course is over already, at its goal or after a collision, it drives on without a manoeuvre.
+  template <class View, class Memory>
+  [[nodiscard]] Plan<View> drive(View const& view, double dt, Memory& memory) {
+    Plan<View> plan;
+    auto const slot = domain().slots()[0];
+    play(view.time() + dt, [&](auto const& frame) {
+      auto const& ego = frame.agents[slot];
+      if (plan.trajectory.empty()) plan.action = ego.action;
+      if (plan.trajectory.empty() || ego.state.time > plan.trajectory.back().time) plan.trajectory.push_back(ego.state);
+      if (auto const* at_end = std::get_if<Domain::behavior_index>(&ego.memory)) memory = *at_end;
+    });
+    go_straight_on(view, view.time() + dt, plan);
+    return plan;
+  }
+
   /// The report on the last run, except ego's memory. Precondition: the run had no problem.
   template <class Memory>
   [[nodiscard]] MctsReport<Domain, Memory> report() {
@@ -151,7 +167,7 @@ class MctsWorkspace {
     MctsReport<Domain, Memory> report;
     report.result = trees_.result();
     for (auto const slot : domain.slots()) report.choosing.push_back(world.roster().agents[slot].id);
-    for (auto const& agent : world.roster().agents) report.agents.push_back(agent.id);
+    report.agents = detail::ids_of(world);
     using Set = ActionSet<std::remove_cvref_t<decltype(domain.action_set())>>;
     double const limit = search().parameters().constraint.limit;
     double second = 0.0;  // share of the visits
@@ -183,42 +199,6 @@ class MctsWorkspace {
 };
 
 namespace detail {
-
-/// Purpose of the random stream that seeds a search in traffic.
-inline constexpr std::uint32_t search_purpose = 0x3c75;
-
-/// Memory of the behaviour that carries out the actions, such as a lane change under way. It outlasts a search.
-template <class Actions>
-using ActionMemory = typename ActionSet<Actions>::Behavior::Memory;
-
-/// The prediction world in which ego chooses, in the middle of the manoeuvre that `memory` describes. Sets `slots` to
-/// ego's slot there; empty if ego is not in traffic.
-template <class PredictionWorld, class Actions, class Others, class View>
-[[nodiscard]] PredictionWorld world_to_search(View const& view, Actions const& actions,
-                                              ActionMemory<Actions> const& memory, Others const& others,
-                                              std::vector<Slot>& slots) {
-  using Behavior = typename ActionSet<Actions>::Behavior;
-  std::optional<Slot> ego;
-  auto world = predicted_for<PredictionWorld>(view, ActionSet<Actions>::behavior(actions), others, ego);
-  slots.clear();
-  if (!ego) return world;
-  slots.push_back(*ego);
-  world.template memory<Behavior>(view.id()) = memory;
-  return world;
-}
-
-/// Fills `plan` with what ego does in the next `dt` [s] by the principal variation, and `memory` with its memory then.
-template <class View, class Workspace, class Memory>
-void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& plan, Memory& memory) {
-  auto const slot = workspace.domain().slots()[0];
-  workspace.play(view.time() + dt, [&](auto const& frame) {
-    auto const& ego = frame.agents[slot];
-    if (plan.trajectory.empty()) plan.action = ego.action;
-    if (plan.trajectory.empty() || ego.state.time > plan.trajectory.back().time) plan.trajectory.push_back(ego.state);
-    if (auto const* at_end = std::get_if<Workspace::Domain::behavior_index>(&ego.memory)) memory = *at_end;
-  });
-  go_straight_on(view, view.time() + dt, plan);
-}
 
 /// Why the course of an agent in `slots` is over, in words, for the first agent to which that applies.
 template <class World>
@@ -256,23 +236,6 @@ void throw_if(SearchResult<Action> const& result, Workspace& workspace, AgentId 
         "the course is over already (" + what_is_over(workspace.domain().world(), workspace.domain().slots()) + ")",
         "ask the evaluators before you plan");
   cambium::throw_if(problem, result.problem_steps);
-}
-
-/// The plan for the next `dt` [s] by the result of `search(workspace)`. If ego's course is over already, at its goal or
-/// after a collision, ego drives on without a manoeuvre. It keeps no tree for the next plan, because a copy of the
-/// world would not have it.
-template <class PredictionWorld, class View, class Memory, class Workspace, class Search>
-[[nodiscard]] Plan<View> plan_by_search(View const& view, Memory& memory, Workspace& workspace, double dt,
-                                        Search&& search) {
-  Plan<View> plan;
-  plan.status = PlanStatus::failed;
-  if constexpr (Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
-    auto const problem = search(workspace).problem;
-    if (problem != SearchProblem::none && problem != SearchProblem::terminal_root) return plan;
-    plan.status = PlanStatus::valid;
-    take_course(view, workspace, dt, plan, memory);
-  }
-  return plan;
 }
 
 }  // namespace detail

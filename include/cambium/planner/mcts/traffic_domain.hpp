@@ -247,7 +247,7 @@ class TrafficDomain {
 
 /// Traffic in which each iteration draws what is unknown about the others anew, by the belief about each. Nodes then
 /// stand only for the actions of the choosing agents, not for states.
-template <class PredictionWorld, class Actions, class Reward, HypothesisModel Others>
+template <class PredictionWorld, class Actions, class Reward, class Others>
 class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> {
   using Base = TrafficDomain<PredictionWorld, Actions, Reward>;
 

@@ -60,7 +60,7 @@ struct TrafficReward {
   double closeness = -20.0;
   double lookahead = 2.0;
 
-  /// One for the goal, and nothing for driving: what a reward of one's own begins with.
+  /// Rewards the goal only, not the driving: a base for a reward of your own.
   [[nodiscard]] static constexpr TrafficReward events() {
     return {.speed_deviation = 0.0,
             .acceleration = 0.0,

@@ -12,12 +12,10 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/evaluation/driving.hpp"
-#include "cambium/planner/planner_model.hpp"
-#include "cambium/planner/predicted.hpp"
-#include "cambium/planner/search/search_budget.hpp"
+#include "cambium/planner/candidate_planner.hpp"
 #include "cambium/planner/mcts/action_set.hpp"
 #include "cambium/planner/policy/policy_tree.hpp"
-#include "cambium/planner/search/search_result.hpp"
+#include "cambium/planner/search/search_budget.hpp"
 
 namespace cambium {
 
@@ -33,9 +31,8 @@ struct PolicyBranch {
 
 /// What a `PolicyTreePlanner` reports. Its candidates are the branches; a score is a negative cost. The course is that
 /// of the best branch if all others keep their lanes.
-template <class World, class Memory = MacroActions::Memory>
-struct PolicyTreeReport : PlannerReport<World, Memory> {
-  std::vector<PolicyBranch> branches;
+template <class World, class Memory>
+struct PolicyTreeReport : CandidateReport<World, Memory, PolicyBranch> {
   std::vector<IntentionBranch> intentions;  ///< of the others, as simulated
 };
 
@@ -54,25 +51,19 @@ struct PolicyTreeReport : PlannerReport<World, Memory> {
 template <class PredictionWorld, class Actions = detail::UsualActions<PredictionWorld>, SearchBudget Budget = NoBudget,
           class Own = Terms<>>
 struct PolicyTreePlanner {
-  static_assert(detail::check_planner<PredictionWorld>());
-  static_assert(detail::check_terms<Own>());
+  static_assert(detail::check_planner<PredictionWorld>() && detail::check_terms<Own>());
   static_assert(PredictionWorld::Behaviors::template contains<Actions>,
                 "cambium::PolicyTreePlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain its "
                 "Actions, such as cambium::MacroActions, which carry out ego's actions and the others' intentions");
 
+  using World = PredictionWorld;
   using Semantic = SemanticActions<Actions>;
   using Memory = typename Actions::Memory;  ///< the ongoing action and its lane change
-  using Report = PolicyTreeReport<PredictionWorld, Memory>;
+  using Report = PolicyTreeReport<World, Memory>;
 
-  struct Workspace {
-    std::optional<PredictionWorld> world;
-    typename PredictionWorld::FrameType start;
-    Slot ego{};
+  struct Workspace : CandidateWorkspace<World, PolicyBranch> {
     bool has_goal = false;
-    std::vector<PolicyBranch> branches;
     std::vector<IntentionBranch> intentions;
-    std::size_t best{};
-    bool is_cut_short = false;
   };
 
   Actions actions = Semantic::usual();
@@ -113,51 +104,74 @@ struct PolicyTreePlanner {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
-    Plan<View> plan;
-    plan.status = PlanStatus::failed;
-    if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
-      if (grow(view, memory, workspace) != SearchProblem::none) return plan;
-      begin(workspace, memory, workspace.branches[workspace.best].sequence.first, nullptr);
-      drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
-      memory = *std::get_if<index>(&workspace.world->frame().agents[workspace.ego].memory);
-    }
-    return plan;
+    return plan_by_candidates(*this, view, memory, dt, workspace);
   }
 
   /// See `PlannerModel`.
   template <class View>
   [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
-    check_parameters(*this);
-    throw_if(grow(view, memory, workspace));
-    Report report;
-    report.branches = workspace.branches;
+    auto report = think_by_candidates(*this, view, memory, workspace);
     report.intentions = workspace.intentions;
-    report.chosen = workspace.best;
-    report.is_cut_short = workspace.is_cut_short;
-    for (auto const& branch : report.branches) report.candidates.push_back({text(branch.sequence), -branch.cost});
-    report.decidedness = decidedness(report.candidates, report.chosen);
-    for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
-    report.course.push_back(workspace.start);
-    (void)simulate<true>(workspace, memory, report.branches[workspace.best].sequence, nullptr,
-                         [&](auto const& frame) { report.course.push_back(frame); });
-    report.memory = *std::get_if<index>(&report.course[1].agents[workspace.ego].memory);
     return report;
   }
 
- private:
-  static constexpr auto index = PredictionWorld::Behaviors::template index<Actions>;
+  /// See `CandidatePlanner`, as for the next ones.
+  template <class View>
+  [[nodiscard]] SearchProblem compare(View const& view, Memory const& memory, Workspace& workspace,
+                                      Budget& clock) const {
+    auto const intended = Semantic::intended(others);
+    if (!workspace.predict(view, actions, intended)) return SearchProblem::not_in_world;
+    if constexpr (Semantic::drives) {
+      detail::expect_to_keep_speed(*workspace.world, workspace.ego, intended, false);
+      workspace.start = workspace.world->frame();
+    }
+    workspace.has_goal = view.has_goal();
+    set_intentions(workspace);
+    auto& branches = workspace.candidates;
+    auto const now = ongoing(memory);
+    auto const all = choices();
+    for (auto const& sequence : policy_sequences({all.data(), all.size()}, now, static_cast<std::size_t>(layers))) {
+      if (!is_available(view, sequence.first, memory)) continue;
+      if (!workspace.goes_on(clock, branches.size())) break;
+      auto& branch = branches.emplace_back();
+      branch.sequence = sequence;
+      weigh(workspace, memory, branch);
+      if (sequence.first != now) branch.cost += weights.change;
+      if (!std::isfinite(branch.cost)) return SearchProblem::not_finite;
+      if (!workspace.chosen || branch.cost < branches[*workspace.chosen].cost) workspace.chosen = branches.size() - 1;
+    }
+    return workspace.chosen ? SearchProblem::none : SearchProblem::no_actions;
+  }
 
-  [[nodiscard]] bool is_change(std::uint8_t choice, int side) const {
-    return ActionSet<Actions>::action(actions, choice).kind ==
-           (side > 0 ? MacroAction::Kind::change_left : MacroAction::Kind::change_right);
+  template <class View>
+  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    begin(workspace, memory, workspace.candidates[*workspace.chosen].sequence.first, nullptr);
+    return workspace.template drive<Actions>(view, dt, step, memory);
+  }
+
+  template <class View>
+  [[nodiscard]] auto foresee(View const&, Memory const& memory, Workspace& workspace) const {
+    std::vector course{workspace.start};
+    (void)simulate(workspace, memory, workspace.candidates[*workspace.chosen].sequence, nullptr, &course);
+    return course;
   }
 
   /// "keep_gap for 2 s, then change_left 0".
-  [[nodiscard]] std::string text(PolicySequence const& sequence) const {
+  template <class View>
+  [[nodiscard]] PlannerCandidate entry(View const&, Workspace const&, PolicyBranch const& branch) const {
+    auto const& sequence = branch.sequence;
     auto const words = [&](std::uint8_t action) { return ActionSet<Actions>::text(actions, action); };
-    if (sequence.first == sequence.then) return words(sequence.first);
-    return words(sequence.first) + " for " + detail::rounded_text(sequence.layers_of_first * layer_duration) +
-           " s, then " + words(sequence.then);
+    auto text = words(sequence.first);
+    if (sequence.first != sequence.then)
+      text += " for " + detail::rounded_text(sequence.layers_of_first * layer_duration) + " s, then " +
+              words(sequence.then);
+    return {std::move(text), -branch.cost};
+  }
+
+ private:
+  [[nodiscard]] bool is_change(std::uint8_t choice, int side) const {
+    return ActionSet<Actions>::action(actions, choice).kind ==
+           (side > 0 ? MacroAction::Kind::change_left : MacroAction::Kind::change_right);
   }
 
   /// The ongoing action. After a completed lane change, that is to keep the lane at the same acceleration.
@@ -189,37 +203,6 @@ struct PolicyTreePlanner {
     auto const& own = Semantic::macro(memory);
     if (Semantic::drives && choice == MacroActions::nothing) return true;
     return (choice == ongoing(memory) && !own.is_new) || Semantic::macro(actions).available(view, choice, own.change);
-  }
-
-  template <class View>
-  [[nodiscard]] SearchProblem grow(View const& view, Memory const& memory, Workspace& workspace) const {
-    auto clock = budget;
-    clock.start();
-    std::optional<Slot> ego;
-    auto const intended = Semantic::intended(others);
-    workspace.world = predicted_for<PredictionWorld>(view, actions, intended, ego);
-    if (!ego) return SearchProblem::not_in_world;
-    if constexpr (Semantic::drives) detail::expect_to_keep_speed(*workspace.world, *ego, intended, false);
-    workspace.ego = *ego;
-    workspace.start = workspace.world->frame();
-    workspace.has_goal = view.has_goal();
-    set_intentions(workspace);
-    workspace.branches.clear();
-    workspace.best = 0;
-    auto const now = ongoing(memory);
-    auto const all = choices();
-    for (auto const& sequence : policy_sequences({all.data(), all.size()}, now, static_cast<std::size_t>(layers))) {
-      if (!is_available(view, sequence.first, memory)) continue;
-      workspace.is_cut_short = !clock.goes_on(workspace.branches.size());
-      if (workspace.is_cut_short) break;
-      auto& branch = workspace.branches.emplace_back();
-      branch.sequence = sequence;
-      weigh(workspace, memory, branch);
-      if (sequence.first != now) branch.cost += weights.change;
-      if (!std::isfinite(branch.cost)) return SearchProblem::not_finite;
-      if (branch.cost < workspace.branches[workspace.best].cost) workspace.best = workspace.branches.size() - 1;
-    }
-    return workspace.branches.empty() ? SearchProblem::no_actions : SearchProblem::none;
   }
 
   /// The intentions that matter. Agents in the lanes beside ego may change into its lane if they are not behind, and
@@ -257,7 +240,7 @@ struct PolicyTreePlanner {
     };
     double sum = 0.0;
     auto const add = [&](IntentionBranch const* deviation, double odds) {
-      auto const cost = simulate<false>(workspace, memory, sequence, deviation, [](auto const&) {});
+      auto const cost = simulate(workspace, memory, sequence, deviation, nullptr);
       double const total = weights.total(cost);
       if (branch.scenarios++ == 0) branch.worst = total;
       if (odds >= weights.least_odds) branch.worst = std::max(branch.worst, total);
@@ -296,34 +279,34 @@ struct PolicyTreePlanner {
       world.template memory<Actions>(agents[deviation->slot].id).choose(static_cast<std::size_t>(deviation->intention));
   }
 
-  /// The cost of a simulation to the end of ego's course; with `all` it continues to the horizon, at no further cost.
-  template <bool all, class F>
+  /// The cost of a simulation to the end of ego's course; with a `course`, see `simulate` of its workspace.
   [[nodiscard]] PolicyCost simulate(Workspace& workspace, Memory const& memory, PolicySequence const& sequence,
-                                    IntentionBranch const* deviation, F&& visit) const {
+                                    IntentionBranch const* deviation,
+                                    std::vector<typename World::FrameType>* course) const {
     auto& world = *workspace.world;
     auto const id = world.roster().agents[workspace.ego].id;
-    begin(workspace, memory, sequence.first, deviation);
     int const steps = std::max(1, static_cast<int>(std::lround(layers * layer_duration / step)));
     int const change = static_cast<int>(std::lround(sequence.layers_of_first * layer_duration / step));
+    auto const choose_before = [&](int k) {
+      if (k == change) world.template memory<Actions>(id).choose(sequence.then);
+    };
     PolicyCost cost;
-    bool is_over = false;
-    for (int k = 0; k < steps && (all || !is_over); ++k) {
-      if (k == change && !is_over) world.template memory<Actions>(id).choose(sequence.then);
-      (void)world.step(step);
-      visit(world.frame());
-      if (is_over) continue;
+    begin(workspace, memory, sequence.first, deviation);
+    choose_before(0);
+    workspace.simulate(steps, step, course, [&](int k) {
       auto const end = course_end(world, workspace.ego);
       auto const own = terms.judge(world, workspace.ego, step);
       cost.terms -= own.reward;
-      is_over = end != CourseEnd::none || own.ends || (workspace.has_goal && world.reached_goal(workspace.ego));
       if (end == CourseEnd::collision || end == CourseEnd::off_road) {  // the earlier, the worse
         double const left = static_cast<double>(steps - k) / steps;
         cost.safety += weights.collision * (1.0 + left);
         cost.efficiency += left;
-      } else if (!is_over) {
-        add_step(workspace, id, 1.0 / steps, cost);
       }
-    }
+      if (end != CourseEnd::none || own.ends || (workspace.has_goal && world.reached_goal(workspace.ego))) return false;
+      add_step(workspace, id, 1.0 / steps, cost);
+      choose_before(k + 1);
+      return true;
+    });
     return cost;
   }
 

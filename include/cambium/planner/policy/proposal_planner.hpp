@@ -18,10 +18,8 @@
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/terms.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/planner/planner_model.hpp"
-#include "cambium/planner/predicted.hpp"
+#include "cambium/planner/candidate_planner.hpp"
 #include "cambium/planner/search/search_budget.hpp"
-#include "cambium/planner/search/search_result.hpp"
 
 namespace cambium {
 
@@ -88,14 +86,8 @@ struct ProposalScore {
   double route = 1.0;  ///< mark: 1 - the present urgency of a change from the lane where it ends
   double terms{};      ///< sum of the planner's `terms`
   double score{};      ///< total of the marks, 0 to 1, plus `terms`
-};
 
-/// What a `ProposalPlanner` reports. Its candidates are the proposals. It chooses none and brakes if even the best soon
-/// collides or leaves the road.
-template <class World>
-struct ProposalReport : PlannerReport<World, IdmProposal::Memory> {
-  std::vector<ProposalScore> proposals;  ///< in order of preference
-  std::size_t best{};                    ///< among the proposals
+  [[nodiscard]] bool fails() const { return collides || leaves_road; }
 };
 
 /// PDM-Closed (Dauner, Hallgarten, Geiger, Chitta 2023, "Parting with misconceptions about learning-based vehicle
@@ -104,26 +96,23 @@ struct ProposalReport : PlannerReport<World, IdmProposal::Memory> {
 /// leaves the road within `emergency_time`. Beyond the paper, with `lane_changes`, drivers who change into a lane
 /// beside are proposed, too. It drives on at its goal. `PredictionWorld` must have `IdmProposal` and `Others` in its
 /// behaviour set. `Own` are a user's own terms, which count beside the marks.
+///
+/// The candidates of its report are the proposals, in order of preference.
 template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget,
           class Own = Terms<>>
 struct ProposalPlanner {
-  static_assert(detail::check_planner<PredictionWorld, Others>());
-  static_assert(detail::check_terms<Own>());
+  static_assert(detail::check_planner<PredictionWorld, Others>() && detail::check_terms<Own>());
   static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
                 "cambium::ProposalPlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
                 "cambium::IdmProposal, the driver that is simulated");
 
+  using World = PredictionWorld;
   using Memory = IdmProposal::Memory;  ///< the proposal that is driven
-  using Report = ProposalReport<PredictionWorld>;
+  using Report = CandidateReport<World, Memory, ProposalScore>;
 
-  struct Workspace {
-    std::optional<PredictionWorld> world;
-    typename PredictionWorld::FrameType start;
-    Slot ego{};
+  struct Workspace : CandidateWorkspace<World, ProposalScore> {
     std::vector<Slot> to_avoid;  ///< see `agents_to_avoid`
-    std::vector<ProposalScore> proposals;
-    std::size_t best{};
-    bool is_cut_short = false;
+    std::size_t best{};          ///< among the proposals; if it soon fails, none is chosen
   };
 
   // Not lists in braces: g++ 12 takes these for uninitialised at -O2.
@@ -175,105 +164,39 @@ struct ProposalPlanner {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
-    Plan<View> plan;
-    plan.status = PlanStatus::failed;
-    if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
-      if (propose(view, memory, workspace) != SearchProblem::none) return plan;
-      auto const& best = workspace.proposals[workspace.best];
-      if (best.time_to_infraction < emergency_time) return brake(view, workspace, best, memory, dt);
-      begin(workspace, best, memory);
-      drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
-      memory = *std::get_if<index>(&workspace.world->frame().agents[workspace.ego].memory);
-    }
-    return plan;
+    return plan_by_candidates(*this, view, memory, dt, workspace);
   }
 
   /// See `PlannerModel`.
   template <class View>
   [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
-    check_parameters(*this);
-    throw_if(propose(view, memory, workspace));
-    Report report;
-    report.proposals = workspace.proposals;
-    report.best = workspace.best;
-    report.is_cut_short = workspace.is_cut_short;
-    double const latest = report.proposals[report.best].time_to_infraction;
-    auto const is_acceptable = [&](ProposalScore const& p) {
-      return p.time_to_infraction >= emergency_time && p.time_to_infraction >= latest;
-    };
-    for (auto const& p : report.proposals)
-      report.candidates.push_back({detail::rounded_text(p.speed_share) + " of the desired speed " +
-                                       (is_valid(p.towards) ? p.left ? "to the left" : "to the right"
-                                                            : "at " + detail::rounded_text(p.offset) + " m"),
-                                   p.score,
-                                   is_acceptable(p) ? ""
-                                   : p.collides     ? "collision"
-                                                    : "off road"});
-    for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
-    report.course.push_back(workspace.start);
-    auto again = report.proposals[report.best];
-    simulate<true>(workspace, again, memory, [&](auto const& frame) { report.course.push_back(frame); });
-    report.memory = *std::get_if<index>(&report.course[1].agents[workspace.ego].memory);
-    auto const& best = report.proposals[report.best];
-    if (best.time_to_infraction >= emergency_time) {
-      report.chosen = report.best;
-    } else {
-      report.memory = memory;
-      (void)brake(view, workspace, best, report.memory, step);
-      replace_course(*workspace.world, workspace.ego, report.course, [&](std::size_t k) {
-        auto after = memory;
-        return brake(view, workspace, best, after, static_cast<double>(k) * step).trajectory.back();
-      });
-    }
-    report.decidedness = decidedness(report.candidates, report.chosen);
-    return report;
+    return think_by_candidates(*this, view, memory, workspace);
   }
 
- private:
-  /// An emergency stop over the next `dt` [s], in the lane change or at the offset of a proposal.
+  /// See `CandidatePlanner`, as for the next ones.
   template <class View>
-  [[nodiscard]] Plan<View> brake(View const& view, Workspace const& workspace, ProposalScore const& proposal,
-                                 Memory& memory, double dt) const {
-    auto const motion = ConstantAcceleration{-emergency_deceleration}.motion(std::max(0.0, view.state().speed), dt);
-    memory.lane = lane_memory(workspace, proposal, memory);
-    if (memory.lane.change.active()) return plan_lane_change(view, memory.lane.change, motion, dt);
-    return plan_to_center(view, memory.lane.change.bend, motion, dt, proposal.offset);
-  }
-
-  static constexpr auto index = PredictionWorld::Behaviors::template index<IdmProposal>;
-
-  template <class View>
-  [[nodiscard]] SearchProblem propose(View const& view, Memory const& memory, Workspace& workspace) const {
-    auto clock = budget;
-    clock.start();
-    std::optional<Slot> ego;
+  [[nodiscard]] SearchProblem compare(View const& view, Memory const& memory, Workspace& workspace,
+                                      Budget& clock) const {
     auto simulated = driver;
     simulated.changing.leaves_room = driver.changing.leaves_room && lane_changes;
-    workspace.world = predicted_for<PredictionWorld>(view, simulated, others, ego);
-    if (!ego) return SearchProblem::not_in_world;
-    detail::expect_to_brake_on(*workspace.world, *ego, others);
-    workspace.ego = *ego;
-    workspace.start = workspace.world->frame();
-    agents_to_avoid(*workspace.world, *ego, workspace.to_avoid);
-    workspace.proposals.clear();
-    workspace.is_cut_short = false;
+    if (!workspace.predict(view, simulated, others)) return SearchProblem::not_in_world;
+    agents_to_avoid(*workspace.world, workspace.ego, workspace.to_avoid);
     double const urgency_here = LaneChangeUrgency{}.at(view, view.place());
     auto const propose_at = [&](double offset, CorridorId towards, bool left) {
       double const urgency_there = is_valid(towards) ? LaneChangeUrgency{}.at(view, view.place(towards)) : urgency_here;
       for (double const share : speed_shares) {
-        workspace.is_cut_short = workspace.is_cut_short || !clock.goes_on(workspace.proposals.size());
-        if (workspace.is_cut_short) return;
-        auto& proposal = workspace.proposals.emplace_back();
+        if (!workspace.goes_on(clock, workspace.candidates.size())) return;
+        auto& proposal = workspace.candidates.emplace_back();
         proposal.speed_share = share;
         proposal.offset = offset;
         proposal.towards = towards;
         proposal.left = left;
-        simulate<false>(workspace, proposal, memory, [](auto const&) {});
+        simulate(workspace, proposal, memory, nullptr);
         proposal.route = 1.0 - (proposal.changes ? urgency_there : urgency_here);
       }
     };
-    auto const& at = workspace.start.agents[*ego].lane;
-    auto const& piece = workspace.world->roster().agents[*ego].road->corridors[at.corridor].pieces[at.piece];
+    auto const& at = workspace.start.agents[workspace.ego].lane;
+    auto const& piece = workspace.world->roster().agents[workspace.ego].road->corridors[at.corridor].pieces[at.piece];
     auto const propose_change = [&](CorridorId towards, bool left) {
       if (lane_changes && is_valid(towards)) propose_at(0.0, towards, left);
     };
@@ -285,6 +208,50 @@ struct ProposalPlanner {
       if (piece.beside(left) != under_way && driver.changing.marks_permit(view, left))
         propose_change(piece.beside(left), left);
     return choose(workspace);
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    if (!workspace.chosen) return brake(view, memory, dt, workspace);
+    begin(workspace, workspace.candidates[*workspace.chosen], memory);
+    return workspace.template drive<IdmProposal>(view, dt, step, memory);
+  }
+
+  template <class View>
+  [[nodiscard]] auto foresee(View const& view, Memory const& memory, Workspace& workspace) const {
+    std::vector course{workspace.start};
+    auto again = workspace.candidates[workspace.best];
+    simulate(workspace, again, memory, &course);
+    if (!workspace.chosen)
+      replace_course(*workspace.world, workspace.ego, course, [&](std::size_t k) {
+        auto after = memory;
+        return brake(view, after, static_cast<double>(k) * step, workspace).trajectory.back();
+      });
+    return course;
+  }
+
+  template <class View>
+  [[nodiscard]] PlannerCandidate entry(View const&, Workspace const& workspace, ProposalScore const& p) const {
+    double const latest = workspace.candidates[workspace.best].time_to_infraction;
+    bool const is_acceptable = p.time_to_infraction >= emergency_time && p.time_to_infraction >= latest;
+    return {detail::rounded_text(p.speed_share) + " of the desired speed " +
+                (is_valid(p.towards) ? p.left ? "to the left" : "to the right"
+                                     : "at " + detail::rounded_text(p.offset) + " m"),
+            p.score,
+            is_acceptable ? ""
+            : p.collides  ? "collision"
+                          : "off road"};
+  }
+
+ private:
+  /// An emergency stop over the next `dt` [s], in the lane change or at the offset of the best proposal.
+  template <class View>
+  [[nodiscard]] Plan<View> brake(View const& view, Memory& memory, double dt, Workspace const& workspace) const {
+    auto const motion = ConstantAcceleration{-emergency_deceleration}.motion(std::max(0.0, view.state().speed), dt);
+    auto const& proposal = workspace.candidates[workspace.best];
+    memory.lane = lane_memory(workspace, proposal, memory);
+    if (memory.lane.change.active()) return plan_lane_change(view, memory.lane.change, motion, dt);
+    return plan_to_center(view, memory.lane.change.bend, motion, dt, proposal.offset);
   }
 
   /// Resets the prediction world to its start, with ego about to drive the proposal.
@@ -309,20 +276,17 @@ struct ProposalPlanner {
     return lane;
   }
 
-  /// Simulates a proposal until it collides, leaves the road or ends; with `all` the world is then stepped to the
-  /// horizon.
-  template <bool all, class F>
-  void simulate(Workspace& workspace, ProposalScore& proposal, Memory const& memory, F&& visit) const {
+  /// Simulates a proposal until it collides, leaves the road or ends; with a `course`, see `simulate` of its workspace.
+  void simulate(Workspace& workspace, ProposalScore& proposal, Memory const& memory,
+                std::vector<typename World::FrameType>* course) const {
     auto& world = *workspace.world;
     auto const ego = workspace.ego;
     begin(workspace, proposal, memory);
     int const steps = std::max(1, static_cast<int>(std::lround(horizon / step)));
     int too_fast = 0, driven = 0;
     double last_acceleration = std::numeric_limits<double>::quiet_NaN();  // none yet
-    for (; driven < steps; ++driven) {
-      auto const before = world.frame().agents[ego];
-      (void)world.step(step);
-      visit(world.frame());
+    auto before = world.frame().agents[ego];
+    workspace.simulate(steps, step, course, [&](int k) {
       auto const& now = world.frame().agents[ego];
       proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
                            std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
@@ -331,26 +295,20 @@ struct ProposalPlanner {
       auto const end = course_end(world, ego, [&](auto const& predicted, Slot slot) {
         return AtFaultCollision{}.among(predicted, slot, workspace.to_avoid);
       });
-      if (end == CourseEnd::over) break;
       proposal.collides = end == CourseEnd::collision;
       proposal.leaves_road = end == CourseEnd::off_road;
-      if (proposal.collides || proposal.leaves_road) {
-        proposal.time_to_infraction = (driven + 1) * step;
-        break;
-      }
-      if (own.ends) break;
+      if (proposal.fails()) proposal.time_to_infraction = (k + 1) * step;
+      if (end != CourseEnd::none || own.ends) return false;
       judge(workspace, before.state, last_acceleration, proposal);
       too_fast += SpeedLimitExcess{}(world, ego) > 1e-3 ? 1 : 0;
-    }
+      ++driven;
+      before = now;
+      return true;
+    });
     proposal.speed_limit = 1.0 - static_cast<double>(too_fast) / std::max(1, driven);
     auto const& memory_then = world.template memory<IdmProposal>(world.roster().agents[ego].id);
     proposal.changes = is_valid(proposal.towards) && (world.frame().agents[ego].lane.corridor == proposal.towards ||
                                                       memory_then.lane.change.target == proposal.towards);
-    if constexpr (all)
-      for (++driven; driven < steps; ++driven) {
-        (void)world.step(step);
-        visit(world.frame());
-      }
   }
 
   /// Sets the marks for time to collision and comfort after a step from `before`.
@@ -377,10 +335,10 @@ struct ProposalPlanner {
 
   [[nodiscard]] SearchProblem choose(Workspace& workspace) const {
     constexpr double least_progress = 0.1;  // [m] proposals that get no farther all stand
-    auto& proposals = workspace.proposals;
+    auto& proposals = workspace.candidates;
     double farthest = 0.0;
     for (auto const& p : proposals)
-      if (!p.collides && !p.leaves_road) farthest = std::max(farthest, p.progress);
+      if (!p.fails()) farthest = std::max(farthest, p.progress);
     double const weights = scoring.weights();
     workspace.best = 0;
     for (std::size_t i = 0; i < proposals.size(); ++i) {
@@ -388,7 +346,7 @@ struct ProposalPlanner {
       double const progress = farthest > least_progress ? std::clamp(p.progress / farthest, 0.0, 1.0) : 1.0;
       double const sum = scoring.progress * progress + scoring.time_to_collision * p.time_to_collision +
                          scoring.speed_limit * p.speed_limit + scoring.comfort * p.comfort + scoring.route * p.route;
-      p.score = (p.collides || p.leaves_road ? 0.0 : sum / weights) + p.terms;
+      p.score = (p.fails() ? 0.0 : sum / weights) + p.terms;
       if (!std::isfinite(p.score)) return SearchProblem::not_finite;
       auto const& best = proposals[workspace.best];
       // First whoever stays clear, or fails last; then the better score.
@@ -396,6 +354,7 @@ struct ProposalPlanner {
       if (both_free ? p.score > best.score + scoring.indifference : p.time_to_infraction > best.time_to_infraction)
         workspace.best = i;
     }
+    if (proposals[workspace.best].time_to_infraction >= emergency_time) workspace.chosen = workspace.best;
     return SearchProblem::none;
   }
 };

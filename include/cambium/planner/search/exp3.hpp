@@ -35,19 +35,13 @@ struct Exp3 {
 
   template <class Arms, class Random>
   [[nodiscard]] std::size_t select(Arms const& arms, std::uint32_t, ReturnScale const&, Random& random) const {
-    auto const [best, sum] = normaliser(arms);
-    double left = uniform01(random);
-    for (std::size_t i = 0; i + 1 < arms.size(); ++i) {
-      left -= mixed(arms, i, best, sum);
-      if (left < 0.0) return i;
-    }
-    return arms.size() - 1;
+    auto const norm = normaliser(arms);
+    return detail::drawn(arms.size(), random, [&](std::size_t i) { return mixed(arms, i, norm); });
   }
 
   template <class Arms>
   void update(Arms const& arms, std::size_t chosen, double score, ReturnScale const&) const {
-    auto const [best, sum] = normaliser(arms);
-    arms[chosen].statistics.gain += score / mixed(arms, chosen, best, sum);
+    arms[chosen].statistics.gain += score / mixed(arms, chosen, normaliser(arms));
   }
 
  private:
@@ -70,9 +64,9 @@ struct Exp3 {
   }
 
   template <class Arms>
-  [[nodiscard]] double mixed(Arms const& arms, std::size_t i, double best, double sum) const {
+  [[nodiscard]] double mixed(Arms const& arms, std::size_t i, Normaliser const& norm) const {
     return exploration / static_cast<double>(arms.size()) +
-           (1.0 - exploration) * weight(arms[i], best, arms.size()) / sum;
+           (1.0 - exploration) * weight(arms[i], norm.best, arms.size()) / norm.sum;
   }
 };
 static_assert(SelectionPolicy<Exp3>);

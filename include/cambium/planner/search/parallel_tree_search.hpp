@@ -40,7 +40,7 @@ class ParallelTreeSearch {
   /// Replaces domain and parameters, and uses `trees` trees, but at most one per iteration. Keeps memory and kept trees
   /// as `TreeSearch::set`. Throws `ParameterError` if `trees` is not from 1 to 1024 or a parameter is out of range.
   template <class Selection, class Rollout, class Budget>
-  void set(Domain domain, TreeSearchParameters parameters, Selection const& selection, Rollout const& rollout,
+  void set(Domain const& domain, TreeSearchParameters parameters, Selection const& selection, Rollout const& rollout,
            Budget const& budget, std::size_t trees) {
     if (trees == 0 || trees > 1024)
       throw ParameterError("ParallelTreeSearch", "has " + std::to_string(trees) + " trees",
@@ -50,14 +50,11 @@ class ParallelTreeSearch {
     searches_.reserve(count);
     while (searches_.size() > count) searches_.pop_back();
     for (std::size_t i = 0; i < count; ++i) {
-      bool const is_last = i + 1 == count;
       if (i == searches_.size())
-        searches_.emplace_back(is_last ? std::move(domain) : domain, parameters, selection, rollout,
-                               budget.part(i, count));
-      else {
-        searches_[i].domain() = is_last ? std::move(domain) : domain;
-        searches_[i].set(parameters, selection, rollout, budget.part(i, count));
-      }
+        searches_.emplace_back(domain);
+      else
+        searches_[i].domain() = domain;
+      searches_[i].set(parameters, selection, rollout, budget.part(i, count));
     }
   }
 
@@ -74,25 +71,19 @@ class ParallelTreeSearch {
   /// As `TreeSearch::run`. The principal variation comes from the tree that agrees with the best actions and visited
   /// them most. Rethrows what a domain throws.
   Result const& run(State const& root, std::uint64_t seed) {
-    for (auto& search : searches_) search.budget().start();
-    return run_started(root, seed);
-  }
-
-  /// The same with a budget that its owner has started, when planning began.
-  Result const& run_started(State const& root, std::uint64_t seed) {
     if (searches_.empty()) throw SearchError("ParallelTreeSearch", "has no domain yet", "call `set` before `run`");
-    if (searches_.size() == 1) return searches_[0].run_started(root, seed);
+    if (searches_.size() == 1) return searches_[0].run(root, seed);
     std::vector<std::exception_ptr> errors(searches_.size());
     auto const grow = [&](std::size_t i) {
       try {
-        searches_[i].run_started(root, seed, static_cast<std::uint32_t>(i));
+        searches_[i].run(root, seed, static_cast<std::uint32_t>(i));
       } catch (...) {
         errors[i] = std::current_exception();
       }
     };
     {
-      Crew crew;
-      for (std::size_t i = 1; i < searches_.size(); ++i) crew.threads.emplace_back(grow, i);
+      std::vector<std::jthread> crew;  // they join at its end, even if not all could be started
+      for (std::size_t i = 1; i < searches_.size(); ++i) crew.emplace_back(grow, i);
       grow(0);
     }
     for (auto const& error : errors)
@@ -106,14 +97,6 @@ class ParallelTreeSearch {
   [[nodiscard]] std::vector<Search> const& searches() const { return searches_; }
 
  private:
-  /// Joins its threads, even if not all could be started.
-  struct Crew {
-    std::vector<std::thread> threads;
-    ~Crew() {
-      for (auto& thread : threads) thread.join();
-    }
-  };
-
   void merge() {
     for (auto const& search : searches_)
       if (search.result().problem != SearchProblem::none) {  // a problem makes the result empty
@@ -155,9 +138,9 @@ class ParallelTreeSearch {
         else
           add(*same, arm);
       }
-      double visits = 0.0;
-      for (auto i = first[k]; i < arms.size(); ++i) visits += arms[i].visits;
-      for (auto i = first[k]; i < arms.size(); ++i) arms[i].share = visits > 0.0 ? arms[i].visits / visits : 0.0;
+      std::span const all(arms.begin() + static_cast<std::ptrdiff_t>(first[k]), arms.end());
+      double const visits = detail::total_visits(all);
+      for (auto& arm : all) arm.share = visits > 0.0 ? arm.visits / visits : 0.0;
     }
     first.push_back(arms.size());
     result_.arms = std::move(arms);

@@ -37,12 +37,7 @@ struct RegretMatching {
   template <class Arms, class Random>
   [[nodiscard]] std::size_t select(Arms const& arms, std::uint32_t, ReturnScale const&, Random& random) const {
     double const regrets = positive_regrets(arms);
-    double left = uniform01(random);
-    for (std::size_t i = 0; i + 1 < arms.size(); ++i) {
-      left -= mixed(arms, i, regrets);
-      if (left < 0.0) return i;
-    }
-    return arms.size() - 1;
+    return detail::drawn(arms.size(), random, [&](std::size_t i) { return mixed(arms, i, regrets); });
   }
 
   template <class Arms>

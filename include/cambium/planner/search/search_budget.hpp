@@ -4,7 +4,6 @@
 #include <chrono>
 #include <concepts>
 #include <cstddef>
-#include <limits>
 
 #include "cambium/core/parameters.hpp"
 
@@ -22,17 +21,23 @@ namespace detail {
 /// How long a planner continues. An iteration is one of a tree search, or one candidate of a planner that compares a
 /// list. Prediction counts, but the course that a report shows is simulated after the budget has ended.
 ///
-/// - `most()`: upper limit of the number of iterations.
-/// - `start()`: called when planning begins.
+/// - `start()`: called when planning begins, and again when its search begins; only the first call counts.
 /// - `goes_on(done)`: whether another iteration follows after `done` of them.
+template <class B>
+concept SearchBudget = std::copyable<B> && requires(B budget, std::size_t done) {
+  budget.start();
+  { budget.goes_on(done) } -> std::same_as<bool>;
+};
+
+/// The budget of a tree search, which does not end by itself. It also has
+///
+/// - `most()`: upper limit of the number of iterations.
 /// - `part(i, n)`: the share of the `i`th of `n` searches that share the budget.
 /// - `expected()`, optional: number of iterations for which memory is reserved at the start; `most()` by default.
 template <class B>
-concept SearchBudget = std::copyable<B> && requires(B budget, B const fixed, std::size_t done) {
-  { fixed.most() } -> std::same_as<std::size_t>;
-  budget.start();
-  { budget.goes_on(done) } -> std::same_as<bool>;
-  { fixed.part(done, done) } -> std::same_as<B>;
+concept TreeSearchBudget = SearchBudget<B> && requires(B const budget, std::size_t i) {
+  { budget.most() } -> std::same_as<std::size_t>;
+  { budget.part(i, i) } -> std::same_as<B>;
 };
 
 /// A fixed number of iterations. The search is then a pure function of state, parameters and seed.
@@ -50,7 +55,7 @@ struct IterationBudget {
   [[nodiscard]] IterationBudget part(std::size_t i, std::size_t n) const { return {detail::part_of(iterations, i, n)}; }
   [[nodiscard]] bool goes_on(std::size_t done) const { return done < iterations; }
 };
-static_assert(SearchBudget<IterationBudget>);
+static_assert(TreeSearchBudget<IterationBudget>);
 
 /// A limit on wall-clock time. The clock is read before every iteration except the first, which always runs. Results
 /// depend on the machine and its load. A tree that outgrows all previous ones allocates.
@@ -71,16 +76,18 @@ struct TimeBudget {
   [[nodiscard]] TimeBudget part(std::size_t i, std::size_t n) const {
     return {duration, detail::part_of(iterations, i, n), begin};
   }
-  void start() { begin = std::chrono::steady_clock::now(); }
+  void start() {
+    if (begin == std::chrono::steady_clock::time_point{}) begin = std::chrono::steady_clock::now();
+  }
   [[nodiscard]] bool goes_on(std::size_t done) const {
     if (done == 0) return true;
     std::chrono::duration<double> const spent = std::chrono::steady_clock::now() - begin;
     return done < iterations && spent.count() < duration;
   }
 
-  std::chrono::steady_clock::time_point begin{};  ///< of the current search
+  std::chrono::steady_clock::time_point begin{};  ///< when it started
 };
-static_assert(SearchBudget<TimeBudget>);
+static_assert(TreeSearchBudget<TimeBudget>);
 
 /// No limit: planners that compare a list score every candidate. A tree search needs a budget that ends.
 struct NoBudget {
@@ -88,9 +95,7 @@ struct NoBudget {
   static constexpr char const* summary = "no limit: every candidate is scored";
   static constexpr auto parameters() { return parameter_list(); }
 
-  [[nodiscard]] std::size_t most() const { return std::numeric_limits<std::size_t>::max(); }
   void start() {}
-  [[nodiscard]] NoBudget part(std::size_t, std::size_t) const { return {}; }
   [[nodiscard]] bool goes_on(std::size_t) const { return true; }
 };
 static_assert(SearchBudget<NoBudget>);

@@ -11,7 +11,7 @@
 
 namespace cambium {
 
-/// Why a search has no result. `throw_if` puts it in words.
+/// Why a search has no result. `throw_if` puts it in words, in this order.
 enum class SearchProblem : std::uint8_t {
   none,
   no_agents,
@@ -98,6 +98,26 @@ inline constexpr bool is_deterministic = [] {
   else
     return false;
 }();
+
+/// Whether a kept tree still holds: by the domain's `same_state`, else by ==.
+template <class D>
+[[nodiscard]] bool is_same_state(D& domain, typename D::State const& predicted, typename D::State const& seen) {
+  if constexpr (requires { domain.same_state(predicted, seen); })
+    return domain.same_state(predicted, seen);
+  else if constexpr (std::equality_comparable<typename D::State>)
+    return predicted == seen;
+  else
+    return false;
+}
+
+/// The memory of a state beyond its size [B].
+template <class D>
+[[nodiscard]] std::size_t heap_bytes(D& domain, typename D::State const& state) {
+  if constexpr (requires { domain.heap_bytes(state); })
+    return domain.heap_bytes(state);
+  else
+    return 0;
+}
 
 }  // namespace detail
 

@@ -25,33 +25,26 @@ struct SearchError : Error {
 
 /// Throws `SearchError`, unless `problem` is `none`. `steps`: from the root to where it arose.
 inline void throw_if(SearchProblem problem, int steps = 0) {
-  auto const where = "search" + (steps > 0 ? ", at step " + std::to_string(steps) : std::string());
-  switch (problem) {
-    case SearchProblem::none:
-      return;
-    case SearchProblem::no_agents:
-      throw SearchError("search", "no agent chooses", "let SearchDomain::agents be at least 1");
-    case SearchProblem::no_actions:
-      throw SearchError(where,
-                        "an agent has no action, or more than max_actions, in a state where the game is not over",
-                        "list at least one, such as doing nothing, or let step say that the game is over");
-    case SearchProblem::no_budget:
-      throw SearchError("search", "its budget is 0 iterations", "give it at least 1");
-    case SearchProblem::terminal_root:
-      throw SearchError("search", "the game is over at the root", "call is_terminal before the search");
-    case SearchProblem::not_finite:
-      throw SearchError(where, "a reward, a cost or a value is not finite, or a return exceeds 1e290",
-                        "check what step, value and the evaluators return");
-    case SearchProblem::cost_out_of_range:
-      throw SearchError(where, "a cost is not between 0 and 1",
-                        "return the probability of the event that must not happen, or 1 once it happened");
-    case SearchProblem::bad_priors:
-      throw SearchError(where, "the priors of a node are negative, not finite or all zero",
-                        "return weights of at least 0, at least one of them positive");
-    case SearchProblem::not_in_world:
-      throw SearchError("search", "the agent to plan for is not in the predicted world, or not in traffic",
-                        "plan for an agent that drives");
-  }
+  struct Words {
+    char const *what, *remedy;
+  };
+  static constexpr Words words[] = {
+      {"", ""},
+      {"no agent chooses", "let SearchDomain::agents be at least 1"},
+      {"an agent has no action, or more than max_actions, in a state where the game is not over",
+       "list at least one, such as doing nothing, or let step say that the game is over"},
+      {"its budget is 0 iterations", "give it at least 1"},
+      {"the game is over at the root", "call is_terminal before the search"},
+      {"a reward, a cost or a value is not finite, or a return exceeds 1e290",
+       "check what step, value and the evaluators return"},
+      {"a cost is not between 0 and 1",
+       "return the probability of the event that must not happen, or 1 once it happened"},
+      {"the priors of a node are negative, not finite or all zero",
+       "return weights of at least 0, at least one of them positive"},
+      {"the agent to plan for is not in the predicted world, or not in traffic", "plan for an agent that drives"}};
+  if (problem == SearchProblem::none) return;
+  auto const& [what, remedy] = words[static_cast<std::size_t>(problem)];
+  throw SearchError("search" + (steps > 0 ? ", at step " + std::to_string(steps) : std::string()), what, remedy);
 }
 
 /// The result for one action of one agent at the root.
@@ -122,12 +115,10 @@ template <class Action>
 template <class Action>
 [[nodiscard]] std::size_t final_choice(std::span<RootArm<Action> const> arms, ReturnScale scale, FinalMove final_move,
                                        double cost_limit) {
-  double visits = 0.0, cheapest = 1.0;
-  for (auto const& arm : arms) {
-    visits += arm.visits;
+  double cheapest = 1.0;
+  for (auto const& arm : arms)
     if (arm.visits > 0) cheapest = std::min(cheapest, estimated_cost(arm));
-  }
-  double const log_visits = portable_log(std::max(1.0, visits));
+  double const log_visits = portable_log(std::max(1.0, static_cast<double>(total_visits(arms))));
   double const limit = std::max(cheapest, cost_limit);
   if (cost_limit < 1.0) scale.multiplier = 0.0;  // within the limit, costs do not count
   auto const merit = [&](RootArm<Action> const& arm) {
@@ -164,8 +155,7 @@ void fill_result(Tree const& tree, std::span<ReturnScale const> scales, TreeSear
   result.nodes = tree.size();
   for (std::size_t k = 0; k < tree.agents(); ++k) {
     result.first_arm.push_back(result.arms.size());
-    double visits = 0.0;
-    for (auto const& arm : tree.arms(0, k)) visits += arm.visits;
+    double const visits = total_visits(tree.arms(0, k));
     for (auto const& arm : tree.arms(0, k))
       result.arms.push_back(
           {arm.action, arm.visits, arm.mean_return(), arm.mean_cost(), visits > 0.0 ? arm.visits / visits : 0.0});

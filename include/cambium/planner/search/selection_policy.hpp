@@ -103,6 +103,14 @@ concept SelectionPolicy = std::copyable<P> && std::default_initializable<typenam
 
 namespace detail {
 
+/// The visits of all arms of an agent at a node.
+template <class Arms>
+[[nodiscard]] std::uint32_t total_visits(Arms const& arms) {
+  std::uint32_t sum = 0;
+  for (auto const& arm : arms) sum += arm.visits;
+  return sum;
+}
+
 /// A random arm among those not tried yet, or `arms.size()` if all have been tried.
 template <class Arms, class Random>
 [[nodiscard]] std::size_t untried_arm(Arms const& arms, Random& random) {
@@ -113,6 +121,17 @@ template <class Arms, class Random>
   std::size_t i = 0;
   while (!is_untried(arms[i]) || skip-- > 0) ++i;
   return i;
+}
+
+/// A number below `count`, drawn by `probability(i)`.
+template <class Random, class Probability>
+[[nodiscard]] std::size_t drawn(std::size_t count, Random& random, Probability const& probability) {
+  double left = uniform01(random);
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    left -= probability(i);
+    if (left < 0.0) return i;
+  }
+  return count - 1;
 }
 
 /// The arm with the highest `score(arm)`; the first one if several are equal.

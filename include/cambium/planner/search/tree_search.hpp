@@ -49,7 +49,7 @@ class TreeSearch {
   static_assert(!SearchDomain<Domain> || RolloutPolicy<Rollout, Domain>,
                 "cambium::TreeSearch<Domain, Selection, Rollout>: Rollout must be a roll-out policy such as "
                 "cambium::RandomRollout (see RolloutPolicy)");
-  static_assert(!std::is_same_v<Budget, NoBudget>,
+  static_assert(TreeSearchBudget<Budget>,
                 "cambium::TreeSearch: a tree search does not end by itself; use cambium::IterationBudget or "
                 "cambium::TimeBudget");
   static_assert(!SearchDomain<Domain> || detail::fewer_actions_than<Domain, 65536>,
@@ -84,19 +84,15 @@ class TreeSearch {
   /// Searches from `root`. If the domain or the state is faulty, the result is empty except for its `problem`. `tree`
   /// distinguishes searches with the same seed that will be merged. The result is valid until the next run.
   Result const& run(State const& root, std::uint64_t seed, std::uint32_t tree = 0) {
-    budget_.start();
-    return run_started(root, seed, tree);
-  }
-
-  /// The same with a budget that its owner has started, when planning began.
-  Result const& run_started(State const& root, std::uint64_t seed, std::uint32_t tree = 0) {
+    auto clock = budget_;
+    clock.start();
     start(root, seed);
-    while (result_.problem == SearchProblem::none && budget_.goes_on(result_.iterations)) {
+    while (result_.problem == SearchProblem::none && clock.goes_on(result_.iterations)) {
       RandomStream random(seed, tree, static_cast<std::uint32_t>(result_.iterations), iteration_purpose);
       iterate(random);
       if (result_.problem == SearchProblem::none) ++result_.iterations;
     }
-    finish();
+    if (result_.problem == SearchProblem::none) detail::fill_result(tree_, scales(), parameters_, chosen_, result_);
     return result_;
   }
 
@@ -109,7 +105,7 @@ class TreeSearch {
     if (detail::SamplesRoot<Domain> || tree_.size() == 0 || joint.size() != tree_.agents()) return false;
     for (std::size_t k = 0; k < joint.size(); ++k) {
       auto const arms = tree_.arms(0, k);
-      auto const at = std::find_if(arms.begin(), arms.end(), [&](auto const& arm) { return arm.action == joint[k]; });
+      auto const at = std::ranges::find(arms, joint[k], &ArmType::action);
       if (at == arms.end()) return false;
       chosen_[k] = static_cast<std::uint16_t>(at - arms.begin());
     }
@@ -149,12 +145,12 @@ class TreeSearch {
   static constexpr std::uint32_t iteration_purpose = 0x75c7;
   static constexpr std::uint32_t root_purpose = 0x75c8;
 
-  static void check(TreeSearchParameters const& parameters, [[maybe_unused]] Selection const& selection,
-                    [[maybe_unused]] Rollout const& rollout, [[maybe_unused]] Budget const& budget) {
-    check_parameters(parameters);
-    if constexpr (Described<Selection>) check_parameters(selection);
-    if constexpr (Described<Rollout>) check_parameters(rollout);
-    if constexpr (Described<Budget>) check_parameters(budget);
+  template <class... Parameters>
+  static void check(Parameters const&... parameters) {
+    auto const check_one = [](auto const& one) {
+      if constexpr (Described<std::remove_cvref_t<decltype(one)>>) check_parameters(one);
+    };
+    (check_one(parameters), ...);
   }
 
   void start(State const& root, std::uint64_t seed) {
@@ -187,7 +183,7 @@ class TreeSearch {
                                  .nodes = most + 1 + kept,
                                  .bytes = parameters_.memory,
                                  .arms_per_node = arms_per_node(agents),
-                                 .state_bytes = resimulates ? 0 : sizeof(State) + heap_bytes(root)};
+                                 .state_bytes = resimulates ? 0 : sizeof(State) + detail::heap_bytes(domain_, root)};
     if constexpr (requires { budget_.expected(); }) limits.first_nodes = budget_.expected() + 1 + kept;
     if (builds_on) {
       tree_.reserve(limits);
@@ -229,27 +225,10 @@ class TreeSearch {
 
   /// The kept node with the same state as `root`, or none.
   [[nodiscard]] std::uint32_t kept_outcome(State const& root) {
-    if (kept_ != detail::no_node && tree_.agents() != static_cast<std::size_t>(domain_.agents())) forget();
-    auto node = kept_;
-    while (node != detail::no_node && (tree_.node(node).terminal || !is_same(tree_.state(node), root)))
-      node = tree_.node(node).next_outcome;
-    return node;
-  }
-
-  [[nodiscard]] bool is_same(State const& predicted, State const& seen) {
-    if constexpr (requires { domain_.same_state(predicted, seen); })
-      return domain_.same_state(predicted, seen);
-    else if constexpr (std::equality_comparable<State>)
-      return predicted == seen;
-    else
-      return false;
-  }
-
-  [[nodiscard]] std::size_t heap_bytes(State const& state) {
-    if constexpr (requires { domain_.heap_bytes(state); })
-      return domain_.heap_bytes(state);
-    else
-      return 0;
+    if (tree_.agents() != static_cast<std::size_t>(domain_.agents())) return detail::no_node;
+    return tree_.find_outcome(kept_, [&](std::uint32_t node) {
+      return !tree_.node(node).terminal && detail::is_same_state(domain_, tree_.state(node), root);
+    });
   }
 
   [[nodiscard]] std::size_t arms_per_node(std::size_t agents) const {
@@ -288,7 +267,7 @@ class TreeSearch {
 
   /// Lets every agent choose an arm at the node; false if its arms do not fit into memory.
   bool choose(std::uint32_t node, State const& state, RandomStream& random) {
-    auto const chosen_before = visits(node);
+    auto const chosen_before = detail::total_visits(tree_.arms(node, 0));  // how often they have chosen here
     for (std::size_t k = 0; k < tree_.agents(); ++k) {
       if constexpr (lists) {
         if (tree_.arms(node, k).empty() && !list_arms(node, k, state)) return false;
@@ -301,13 +280,6 @@ class TreeSearch {
       joint_[k] = arms[chosen_[k]].action;
     }
     return true;
-  }
-
-  /// How often the agents have chosen at a node.
-  [[nodiscard]] std::uint32_t visits(std::uint32_t node) const {
-    std::uint32_t sum = 0;
-    for (auto const& arm : tree_.arms(node, 0)) sum += arm.visits;
-    return sum;
   }
 
   /// Gives the agent its listed actions as arms at the node; false if they are faulty or do not fit into memory.
@@ -366,8 +338,12 @@ class TreeSearch {
     std::copy(chosen_.begin(), chosen_.end(), path_arms_.begin() + depth * static_cast<std::ptrdiff_t>(agents));
     auto child = tree_.find(node, chosen_);
     std::span<AgentOutcome> const outcomes(path_outcomes_.data() + static_cast<std::size_t>(depth) * agents, agents);
-    if (!resimulates && child != detail::no_node && (detail::is_deterministic<Domain> || !wants_outcome(child))) {
-      if constexpr (!detail::is_deterministic<Domain>) child = known_outcome(child, random);
+    auto const wants_outcome = [&] {
+      auto const [count, visits] = tree_.outcomes_of_actions(child);
+      return more_outcomes_.allow(count, visits + 1);
+    };
+    if (!resimulates && child != detail::no_node && (detail::is_deterministic<Domain> || !wants_outcome())) {
+      if constexpr (!detail::is_deterministic<Domain>) child = tree_.drawn_outcome(child, random);
       std::ranges::copy(tree_.outcomes(child), outcomes.begin());
       over = tree_.node(child).terminal;
       return child;
@@ -379,36 +355,17 @@ class TreeSearch {
     if (auto const problem = detail::problem_of(outcomes); problem != SearchProblem::none) stop(problem);
     if (resimulates && child != detail::no_node) return child;
     if constexpr (!resimulates && !detail::is_deterministic<Domain> && std::equality_comparable<State>)
-      for (auto other = child; other != detail::no_node; other = tree_.node(other).next_outcome)
-        if (tree_.state(other) == work_) {
-          ++tree_.node(other).draws;
-          return other;
-        }
+      if (auto const known = tree_.find_outcome(child, [&](auto other) { return tree_.state(other) == work_; });
+          known != detail::no_node) {
+        ++tree_.node(known).draws;
+        return known;
+      }
     is_new = true;
     if (!tree_.has_room()) {
       result_.is_full = true;
       return detail::no_node;
     }
     return tree_.add(node, chosen_, outcomes, over, work_);
-  }
-
-  /// Whether the widening permits another outcome of the same actions; `first` is the first one known.
-  [[nodiscard]] bool wants_outcome(std::uint32_t first) const {
-    std::uint32_t visits = 1;
-    std::size_t count = 0;
-    for (auto n = first; n != detail::no_node; n = tree_.node(n).next_outcome, ++count) visits += tree_.node(n).visits;
-    return more_outcomes_.allow(count, visits);
-  }
-
-  /// A random outcome among these, with a probability in proportion to the steps that led to it. (Visits instead would
-  /// reinforce themselves.)
-  [[nodiscard]] std::uint32_t known_outcome(std::uint32_t first, RandomStream& random) const {
-    std::uint32_t draws = 0;
-    for (auto n = first; n != detail::no_node; n = tree_.node(n).next_outcome) draws += tree_.node(n).draws;
-    auto left = uniform_index(random, draws);
-    auto n = first;
-    for (; left >= tree_.node(n).draws; n = tree_.node(n).next_outcome) left -= tree_.node(n).draws;
-    return n;
   }
 
   void roll_out(int depth, RandomStream& random) {
@@ -466,11 +423,6 @@ class TreeSearch {
       auto& multiplier = scales_[k].multiplier;
       multiplier = std::clamp(multiplier + step * (arms[best].mean_cost() - parameters_.constraint.limit), 0.0, 1e3);
     }
-  }
-
-  void finish() {
-    if (result_.problem != SearchProblem::none) return;
-    detail::fill_result(tree_, scales(), parameters_, chosen_, result_);
   }
 
   Domain domain_;

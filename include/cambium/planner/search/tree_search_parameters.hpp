@@ -52,12 +52,12 @@ struct WideningSchedule {
 
 }  // namespace detail
 
-/// How costs count beside returns, which are scaled to [0, 1] without them: what must not happen neither stretches that
-/// scale nor drowns in it. With a limit, the weight is only where the search begins: it learns the Lagrange multiplier
-/// that keeps the expected cost of the chosen course within the limit (Lee et al. 2018, CC-POMCP). If an event that
-/// must not happen costs 1, this is a chance constraint: costs then count in full, whenever they come. Without a limit,
-/// a late event may count less than an early one. For the worst course without one to be better than the best with one
-/// at the horizon, the weight must be above 1 / discount^(horizon - 1).
+/// How costs weigh against returns. Returns alone are scaled to [0, 1], so a forbidden event neither stretches that
+/// scale nor gets lost in it. With a limit, the search starts from the weight and learns the Lagrange multiplier that
+/// keeps the expected cost of the chosen course within the limit (Lee et al. 2018, CC-POMCP). If a forbidden event
+/// costs 1, this is a chance constraint: costs count in full, however late they come. Without a limit, a late event may
+/// count less than an early one. The worst course without such an event beats the best one with it at the horizon if
+/// the weight exceeds 1 / discount^(horizon - 1).
 struct CostConstraint {
   double weight = 2.5;
   double discount = 1.0;

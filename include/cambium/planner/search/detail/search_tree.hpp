@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/distributions.hpp"
 #include "cambium/planner/search/search_domain.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
@@ -151,6 +152,38 @@ class SearchTree {
     return no_node;
   }
 
+  /// The first of the outcomes of the same actions, from node `first` on, for which `is_it(node)` holds; else
+  /// `no_node`.
+  template <class F>
+  [[nodiscard]] std::uint32_t find_outcome(std::uint32_t first, F&& is_it) const {
+    while (first != no_node && !is_it(first)) first = nodes_[first].next_outcome;
+    return first;
+  }
+
+  /// The number of outcomes of the same actions, of which node `first` is the first, and the courses through them.
+  struct Outcomes {
+    std::size_t count = 0;
+    std::uint32_t visits = 0;
+  };
+  [[nodiscard]] Outcomes outcomes_of_actions(std::uint32_t first) const {
+    Outcomes all;
+    for (; first != no_node; first = nodes_[first].next_outcome, ++all.count) all.visits += nodes_[first].visits;
+    return all;
+  }
+
+  /// A random one of these outcomes, with a probability in proportion to the steps that led to it. (Visits instead
+  /// would reinforce themselves.)
+  [[nodiscard]] std::uint32_t drawn_outcome(std::uint32_t first, RandomStream& random) const {
+    std::uint32_t draws = 0;
+    for (auto n = first; n != no_node; n = nodes_[n].next_outcome) draws += nodes_[n].draws;
+    auto left = uniform_index(random, draws);
+    return find_outcome(first, [&](std::uint32_t n) {
+      bool const is_it = left < nodes_[n].draws;
+      left -= nodes_[n].draws;
+      return is_it;
+    });
+  }
+
   /// Makes node `root` the root and drops everything that is not below it. O(n log n) in the nodes; no allocation once
   /// warm.
   void keep_below(std::uint32_t root) {
@@ -193,9 +226,9 @@ class SearchTree {
 
   /// Enters a node into the table, or appends it to the outcomes of the same actions.
   void link(std::uint32_t n) {
-    if (auto first = find(nodes_[n].parent, joint(n)); first != no_node) {
-      while (nodes_[first].next_outcome != no_node) first = nodes_[first].next_outcome;
-      nodes_[first].next_outcome = n;
+    if (auto const first = find(nodes_[n].parent, joint(n)); first != no_node) {
+      auto const last = find_outcome(first, [&](std::uint32_t other) { return nodes_[other].next_outcome == no_node; });
+      nodes_[last].next_outcome = n;
       return;
     }
     auto at = hash(nodes_[n].parent, joint(n)) & (table_.size() - 1);
