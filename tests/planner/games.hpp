@@ -1,5 +1,7 @@
 #pragma once
 
+#include <doctest/doctest.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,6 +18,32 @@ namespace games {
 
 using cambium::AgentOutcome;
 using cambium::RandomStream;
+
+/// Checks that two searches found the same.
+template <class Result>
+void check_equal(Result const& a, Result const& b) {
+  CHECK(a.iterations == b.iterations);
+  CHECK(a.nodes == b.nodes);
+  CHECK(a.depths == b.depths);
+  CHECK(a.variation == b.variation);
+  CHECK(std::ranges::equal(a.arms, b.arms, [](auto const& p, auto const& q) {
+    return p.visits == q.visits && p.mean_return == q.mean_return && p.mean_cost == q.mean_cost && p.share == q.share;
+  }));
+}
+
+/// What games of one agent have in common that chooses a number below `count`.
+template <int count>
+struct Solo {
+  static constexpr std::size_t max_actions = count;
+  using State = int;
+  using Action = int;
+  std::size_t agents() const { return 1; }
+  bool is_terminal(State) const { return false; }
+  std::size_t actions(State, std::size_t, std::span<int> out) const {
+    for (int i = 0; i < count; ++i) out[static_cast<std::size_t>(i)] = i;
+    return count;
+  }
+};
 
 /// Two players, one simultaneous move. The first gets p = `payoff[row][column]`, the second 1 - p.
 struct MatrixGame {
@@ -91,6 +119,16 @@ struct TicTacToe {
     return won != 0 || s.moves == 9;
   }
 
+  /// The joint action if the player to move takes that place.
+  static std::array<int, 2> joint(State const& s, int place) {
+    return s.moves % 2 == 0 ? std::array{place, -1} : std::array{-1, place};
+  }
+  void move(State& s, int place) const {
+    std::array<AgentOutcome, 2> outcomes{};
+    RandomStream none(0, 0, 0);
+    (void)step(s, joint(s, place), none, outcomes);
+  }
+
   /// Value of the game for player 0 under perfect play.
   static int solution(State const& s) {
     if (int const won = winner(s); won != 0) return won;
@@ -100,8 +138,7 @@ struct TicTacToe {
     for (std::size_t i = 0; i < 9; ++i) {
       if (s.board[i] != 0) continue;
       State next = s;
-      next.board[i] = static_cast<std::int8_t>(sign);
-      ++next.moves;
+      TicTacToe{}.move(next, static_cast<int>(i));
       best = std::max(best, sign * solution(next));
     }
     return sign * best;

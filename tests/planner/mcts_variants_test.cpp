@@ -1,19 +1,9 @@
 // Selections, roll-outs, budgets, final moves and actions of searches in traffic.
-#include <doctest/doctest.h>
-
-#include <cstddef>
-#include <cstdint>
-#include <string>
-
-#include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts/mcts.hpp"
-#include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/planner/search/puct.hpp"
-#include "cambium/world/world.hpp"
-#include "support/maps.hpp"
+#include "planner/planner_fixtures.hpp"
 #include "support/scale.hpp"
 
-using namespace cambium;
+using namespace planner_fixtures;
 
 namespace {
 
@@ -27,7 +17,6 @@ struct Expecting : TrafficReward {
   }
 };
 
-using PredictionWorld = World<BehaviorSet<MacroActions, IdmClassic, ExternalInput>, InterpolateExecution, SingleTrack>;
 template <class Options, class Reward = TrafficReward, class Actions = MacroActions>
 using Single = Mcts<PredictionWorld, Actions, Reward, IdmClassic, Options>;
 
@@ -36,11 +25,9 @@ using Truncated = Single<MctsOptions<Ucb1, TruncatedRollout<RandomRollout>>>;
 using Policy = Single<MctsOptions<Ucb1, PolicyRollout>>;
 using Timed = Single<MctsOptions<Ucb1, RandomRollout, TimeBudget>>;
 using Expected = Single<MctsOptions<Puct>, Expecting>;
-using Sampled = Mcts<PredictionWorld, SampledInputs, TrafficReward, IdmClassic>;
+using Sampled = Mcts<World<BehaviorSet<ExternalInput, IdmClassic>, InterpolateExecution, SingleTrack>, SampledInputs>;
 using Sim = World<BehaviorSet<IdmClassic, Plain, Truncated, Policy, Timed, Expected, Sampled>, InterpolateExecution,
                   SingleTrack>;
-
-constexpr AgentId ego{0};
 
 template <class Planner>
 Planner careful() {
@@ -86,16 +73,12 @@ TEST_CASE("every variant of the search stops behind a standing vehicle") {
   }
 }
 
-constexpr TrafficReward only_progress = [] {
-  auto reward = TrafficReward::events();
-  reward.progress = 1.0;
-  return reward;
-}();
-
 TEST_CASE("a course that is cut off has the reward's value, with the others' weighted by the cooperation") {
   Sim world(support::straight_road(1, 300.0));
   world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   world.add({.position = {60, -1.75}, .speed = 11, .behavior = IdmClassic{}});
+  auto only_progress = TrafficReward::events();
+  only_progress.progress = 1.0;
   for (double const lookahead : {2.0, 0.0}) {
     using Cooperative = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, NoRollout>>;
     Cooperative planner{.most_agents = 4};
@@ -104,8 +87,7 @@ TEST_CASE("a course that is cut off has the reward's value, with the others' wei
     planner.reward.lookahead = lookahead;
     planner.options.hold = 1;
     planner.options.search = {.horizon = 1, .discount = 0.9};
-    Cooperative::Workspace workspace;
-    auto const report = planner.think(world.observe(ego), {}, workspace);
+    auto const report = report_of(planner, world);
     double const own = 12.0 * (0.2 + 0.9 * lookahead), other = 11.0 * (0.2 + 0.9 * lookahead);
     CHECK(report.result.choice(0).mean_return == doctest::Approx(own + 0.5 * other));
     CHECK(report.result.choice(1).mean_return == doctest::Approx(other + 0.5 * own));
@@ -118,8 +100,7 @@ TEST_CASE("a course that is cut off has the reward's value, with the others' wei
   planner.options.search = {.horizon = 20, .discount = 1.0};
   planner.options.budget.iterations = 1;
   planner.options.rollout.base.steps = 4;
-  Truncated::Workspace workspace;
-  auto const report = planner.think(world.observe(ego), {}, workspace);
+  auto const report = report_of(planner, world);
   CHECK(report.result.choice(0).mean_return == doctest::Approx(12.0 * (5 * 0.2 + 2.0)));
 }
 
@@ -130,10 +111,9 @@ TEST_CASE("a user's prior guides a search in traffic and is checked") {
   planner.reward = {TrafficReward::events()};  // all is worth as much
   planner.reward.braking = 50.0;
   planner.options.budget.iterations = 200;
-  Expected::Workspace workspace;
-  auto const report = planner.think(world.observe(ego), {}, workspace);
+  auto const report = report_of(planner, world);
   CHECK(report.result.choice(0).share > 0.3);
   CHECK(report.candidates[*report.chosen].name.starts_with("stay -"));
   planner.reward.braking = -1.0;
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
+  CHECK_THROWS_AS((void)report_of(planner, world), SearchError);
 }

@@ -1,51 +1,27 @@
 // Laws of all planners where driving is harder: before a bend, behind a standing vehicle, at a merge, behind a slow
 // leader.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <variant>
 
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/behavior/junction/intersection.hpp"
 #include "cambium/behavior/lane_change/driver_actions.hpp"
 #include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/core/distributions.hpp"
-#include "cambium/evaluation/collision.hpp"
-#include "cambium/evaluation/driving.hpp"
-#include "cambium/evaluation/off_road.hpp"
-#include "cambium/execution/interpolate.hpp"
-#include "cambium/map/road/curve_layout.hpp"
 #include "cambium/map/building/road_plan.hpp"
-#include "cambium/planner/frenet/frenet_planner.hpp"
-#include "cambium/planner/mcts/mcts.hpp"
-#include "cambium/planner/policy/policy_tree_planner.hpp"
-#include "cambium/planner/policy/proposal_planner.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/merging_site.hpp"
-#include "cambium/world/world.hpp"
-#include "../support/scale.hpp"
-#include "support/maps.hpp"
+#include "planner/planner_fixtures.hpp"
+#include "support/scale.hpp"
 
-using namespace cambium;
+using namespace planner_fixtures;
 
 namespace {
 
-using PredictionWorld =
-    World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, HeadwayHypotheses<IdmClassic>, ConstantAcceleration>,
-          InterpolateExecution, SingleTrack>;
 using Search = Mcts<PredictionWorld, MacroActions, TrafficReward, ConstantAcceleration>;
-using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, HeadwayHypotheses<IdmClassic>>;
-using Proposal = ProposalPlanner<PredictionWorld>;
-using PolicyTree = PolicyTreePlanner<PredictionWorld>;
-using Frenet = FrenetPlanner<PredictionWorld>;
 #define ALL_PLANNERS Search, Learning, Proposal, PolicyTree, Frenet
 // Those who expect the others to go on as they do. `HeadwayHypotheses<IdmClassic>` expects that a standing vehicle
 // drives off.
@@ -72,64 +48,47 @@ Planner quick() {
   return planner;
 }
 
-template <class Planner>
-double step_of(Planner const& planner) {
-  if constexpr (requires { planner.options; })
-    return planner.options.step;
-  else
-    return planner.step;
-}
-
 /// What a run has shown of ego.
 struct Drive {
   double way = 0.0;      ///< [m]
   double lateral = 0.0;  ///< highest lateral acceleration [m/s^2]
 };
 
-/// Steps `world` by the planner's own step, for `duration` [s] or until ego is at its goal, and checks what holds
-/// everywhere: ego causes no collision, stays on the road, and drives the start of the course that it reports.
+/// Steps `world` by the planner's own step, for `duration` [s] or until `agent` is at its goal, and checks what holds
+/// everywhere: it causes no collision, stays on the road, drives the start of the course that it reports,
+/// and, in the first of the runs, moves the same again from the same state.
 template <class Planner>
-Drive drive(Sim& world, AgentId ego, Planner const& planner, double duration) {
+Drive drive(std::uint64_t seed, Sim& world, AgentId agent, Planner const& planner, double duration) {
   double const dt = step_of(planner);
-  typename Planner::Workspace workspace;
+  auto again = world;
   Drive seen;
-  for (int i = 0; i * dt < duration && world.status(ego) == AgentStatus::driving && !world.reached_goal(ego); ++i) {
+  for (int i = 0; i * dt < duration && world.status(agent) == AgentStatus::driving && !world.reached_goal(agent); ++i) {
     CAPTURE(world.time());
-    auto const before = world.state(ego);
-    typename Planner::Report report;
-    bool const asks = i % 8 == 0;
-    if (asks) report = planner.think(world.observe(ego), world.template memory<Planner>(ego), workspace);
+    auto const before = world.state(agent);
+    typename Planner::Workspace workspace;
+    std::optional<typename Planner::Report> report;
+    if (i % 8 == 0) report = planner.think(world.observe(agent), world.template memory<Planner>(agent), workspace);
     REQUIRE(world.step(dt));
-    auto const now = world.state(ego);
-    auto const slot = world.slot_of(ego);
-    if (asks) {
-      auto const at = std::ranges::find(report.agents, ego) - report.agents.begin();
-      auto planned = report.course[1].agents[static_cast<Slot>(at)].state;
+    auto const now = world.state(agent);
+    auto const slot = world.slot_of(agent);
+    if (report) {
+      auto const at = std::ranges::find(report->agents, agent) - report->agents.begin();
+      auto planned = report->course[1].agents[static_cast<Slot>(at)].state;
       planned.time = now.time;
       CHECK(now == planned);
-      CHECK(world.template memory<Planner>(ego) == report.memory);
+      CHECK(world.template memory<Planner>(agent) == report->memory);
     }
     seen.way += 0.5 * (before.speed + now.speed) * dt;
     seen.lateral = std::max(seen.lateral, std::abs(LateralAcceleration::between(before, now)));
     REQUIRE_FALSE(AtFaultCollision{}(world, slot));
     REQUIRE_FALSE(OffRoad{}(world, slot));
   }
-  return seen;
-}
-
-/// The same, and the first of the runs twice: from the same state, the same motion.
-template <class Planner>
-Drive drive(std::uint64_t seed, Sim& world, AgentId ego, Planner const& planner, double duration) {
-  auto again = world;
-  auto const seen = drive<Planner>(world, ego, planner, duration);
   if (seed == 0) {
-    (void)drive<Planner>(again, ego, planner, duration);
+    (void)drive<Planner>(1, again, agent, planner, duration);
     CHECK(world.frame() == again.frame());
   }
   return seen;
 }
-
-constexpr AgentId first{0};
 
 }  // namespace
 
@@ -143,7 +102,7 @@ TEST_CASE_TEMPLATE("it slows down for a bend and drives through it", Planner, AL
         {}, {{150.0}, {20.0, 0.0, curvature}, {40.0, curvature, curvature}, {20.0, curvature, 0.0}, {200.0}});
     Sim world(support::map_of({.id = "1", .line = line, .sections = {{.right = map::equal_lanes(1)}}}), {.seed = seed});
     world.add({.position = {30.0, -1.75}, .speed = Uniform{8.0, 15.0}(random), .behavior = planner});
-    auto const seen = drive<Planner>(seed, world, first, planner, 40.0);
+    auto const seen = drive<Planner>(seed, world, ego, planner, 40.0);
     CHECK(seen.lateral < 1.05 * highest_lateral);
     CHECK(seen.way > 220.0);
   }
@@ -161,10 +120,10 @@ TEST_CASE_TEMPLATE("it stops behind a standing vehicle, or passes it in another 
     world.add({.position = {at, lane},
                .shape = seed % 3 == 0 ? geometry::truck() : geometry::car(),
                .behavior = ConstantAcceleration{0.0}});
-    auto const seen = drive<Planner>(seed, world, first, planner, 40.0);
+    auto const seen = drive<Planner>(seed, world, ego, planner, 40.0);
     bool const passes = lanes == 2;
     CHECK(seen.way > (passes ? at : 0.8 * (at - 30.0)));
-    if (!passes) CHECK(world.state(first).speed < 0.5);
+    if (!passes) CHECK(world.state(ego).speed < 0.5);
   }
 }
 
@@ -198,8 +157,8 @@ TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_P
     world.add({.position = {30.0, -5.25}, .speed = Uniform{8.0, 14.0}(random), .behavior = planner});
     world.add({.position = {begin, -5.25}, .speed = slow, .behavior = IdmClassic{.desired_speed = slow}});
     world.add({.position = {beside, -1.75}, .speed = 13.0, .behavior = IdmClassic{.desired_speed = 13.0}});
-    (void)drive<Planner>(seed, world, first, planner, 30.0);
-    double const ahead = world.state(first).x - world.state(AgentId{1}).x;
+    (void)drive<Planner>(seed, world, ego, planner, 30.0);
+    double const ahead = world.state(ego).x - world.state(AgentId{1}).x;
     CHECK(ahead > (passes ? 20.0 : -30.0));
     passed += ahead > 20.0;
   }
@@ -235,8 +194,8 @@ int arrivals(int wanted, Sample const& sample, MakeEgo const& make_ego) {
     using Own = World<BehaviorSet<Planner, Driver>, InterpolateExecution, SingleTrack>;
     auto scenario =
         with_behaviors<Own>(drawn, [](auto const& spec) { return std::get<Driver>(spec.behavior.given()); });
-    auto const ego = std::ranges::find(scenario.agents, scenario.ego, [](auto const& s) { return *s.id.given(); });
-    if (!make_ego(*ego)) continue;
+    auto const planned = std::ranges::find(scenario.agents, scenario.ego, [](auto const& s) { return *s.id.given(); });
+    if (!make_ego(*planned)) continue;
     ++run;
     auto world = scenario.make_world();
     auto const slot = world.slot_of(scenario.ego);
@@ -259,18 +218,18 @@ TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, 
   auto const count = static_cast<int>(support::runs(8));
   int const arrived = arrivals<Planner, Mobil>(
       count, [&](std::uint32_t number) { return site.sample(3, number); },
-      [](auto& ego) {
-        if (std::holds_alternative<NoGoal>(ego.goal.given())) return false;
-        double const speed = std::get<Mobil>(ego.behavior.given()).idm.desired_speed;
+      [](auto& spec) {
+        if (std::holds_alternative<NoGoal>(spec.goal.given())) return false;
+        double const speed = std::get<Mobil>(spec.behavior.given()).idm.desired_speed;
         if constexpr (std::is_same_v<Planner, Frenet>) {
           Planner planner;
           planner.desired_speed = speed;
-          ego.behavior = planner;
+          spec.behavior = planner;
         } else {
           auto planner = ruled_search();
           planner.reward.desired_speed = planner.actions.driver.idm.desired_speed =
               planner.actions.macro.idm.desired_speed = speed;
-          ego.behavior = planner;
+          spec.behavior = planner;
         }
         return true;
       });
@@ -289,14 +248,14 @@ TEST_CASE_TEMPLATE(
       auto const count = static_cast<int>(support::runs(4));
       int const arrived = arrivals<Planner, Intersection>(
           count, [&](std::uint32_t number) { return site.sample(3, number, {.lights = lights}); },
-          [](auto& ego) {
+          [](auto& spec) {
             Planner planner;
             if constexpr (requires { planner.reward; }) {
               planner = ruled_search<Planner>();
               planner.reward.desired_speed = 10.0;
             }
             planner.actions.driver.idm.desired_speed = planner.actions.macro.idm.desired_speed = 10.0;
-            ego.behavior = planner;
+            spec.behavior = planner;
             return true;
           });
       CHECK(arrived == count);
@@ -310,10 +269,8 @@ TEST_CASE("a policy tree stops at a red light, and may drive by the rules") {
     world.set_light(light.id, {.cycle = 100.0, .green_begin = 60.0, .green_end = 70.0});
   auto const lane = map->find_lane("1", 50.0, -2);
   auto const pose = map->lane(lane).path.pose(map->lane(lane).length() - 60.0);
-  auto const ego =
-      world.add({.position = pose.position(), .heading = pose.heading, .speed = 10.0, .behavior = RuledTree{}});
-  RuledTree::Workspace workspace;
-  auto const report = RuledTree{}.think(world.observe(ego), world.memory<RuledTree>(ego), workspace);
+  world.add({.position = pose.position(), .heading = pose.heading, .speed = 10.0, .behavior = RuledTree{}});
+  auto const report = report_of(RuledTree{}, world, world.memory<RuledTree>(ego));
   CHECK(report.candidates.front().name == "drive");
   for (int i = 0; i < 100; ++i) REQUIRE(world.step(0.2));
   CHECK(world.state(ego).speed < 0.1);

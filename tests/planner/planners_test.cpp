@@ -1,11 +1,4 @@
 // Laws that hold for every planner: the shipped ones and a user's own, written with the public interface only.
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <optional>
 #include <set>
 #include <span>
@@ -14,19 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/execution/interpolate.hpp"
 #include "cambium/observer/parametric.hpp"
-#include "cambium/planner/frenet/frenet_planner.hpp"
-#include "cambium/planner/mcts/mcts.hpp"
-#include "cambium/planner/planner_model.hpp"
-#include "cambium/planner/policy/policy_tree_planner.hpp"
-#include "cambium/planner/policy/proposal_planner.hpp"
-#include "cambium/world/world.hpp"
+#include "planner/planner_fixtures.hpp"
 #include "support/allocations.hpp"
-#include "support/maps.hpp"
 
-using namespace cambium;
+using namespace planner_fixtures;
 
 namespace {
 
@@ -74,17 +59,13 @@ struct cambium::ActionSet<Speeds> {
 
 namespace {
 
-using PredictionWorld = World<
-    BehaviorSet<MacroActions, IdmProposal, IdmClassic, HeadwayHypotheses<IdmClassic>, ConstantAcceleration, ReachSpeed>,
-    InterpolateExecution, SingleTrack>;
-
-/// A user's planner: among a few constant accelerations it picks the one that gets farthest without a collision, or
-/// brakes by the first one.
+/// A user's planner: among a few accelerations it picks the one that gets farthest without a collision, or brakes by
+/// the first one.
 struct Greedy {
-  struct Memory {
-    friend bool operator==(Memory, Memory) = default;
-  };
-  struct Workspace {};
+  using World = PredictionWorld;
+  using Memory = MacroActions::Memory;
+  using Workspace = CandidateWorkspace<World, PlannerCandidate>;
+  using Report = CandidateReport<World, Memory, PlannerCandidate>;
 
   double horizon = 3.0;
   double step = 0.2;
@@ -98,56 +79,63 @@ struct Greedy {
   }
 
   template <class View>
-  [[nodiscard]] PlannerReport<PredictionWorld, Memory> think(View const& view, Memory const&, Workspace&) const {
-    check_parameters(*this);
-    PlannerReport<PredictionWorld, Memory> report;
-    for (double const acceleration : {-5.0, 0.0, -2.0, 1.5}) {
-      if (!budget.goes_on(report.candidates.size())) {
-        report.is_cut_short = true;
-        break;
-      }
-      std::optional<Slot> ego;
-      auto world = predicted_for<PredictionWorld>(view, ConstantAcceleration{acceleration, 15.0}, IdmClassic{}, ego);
-      if (!ego) throw SearchError("agent " + to_string(view.id()), "is not in traffic", "plan for agents that drive");
-      std::vector<typename PredictionWorld::FrameType> course{world.frame()};
-      auto end = CourseEnd::none;
-      while (static_cast<int>(course.size()) <= std::lround(horizon / step)) {
-        (void)world.step(step);
-        course.push_back(world.frame());
-        if (end == CourseEnd::none) end = course_end(world, *ego);
-      }
-      bool const is_free = end == CourseEnd::none || end == CourseEnd::over;
-      report.candidates.push_back({"accelerate by " + std::to_string(acceleration),
-                                   course.back().agents[*ego].lane.s - course.front().agents[*ego].lane.s,
-                                   is_free ? "" : "ends badly"});
-      auto const number = report.candidates.size() - 1;
-      if (report.course.empty() ||
-          (is_free && (!report.chosen || report.candidates[number].score > report.candidates[*report.chosen].score)))
-        report.course = std::move(course);
-      if (is_free && (!report.chosen || report.candidates[number].score > report.candidates[*report.chosen].score))
-        report.chosen = number;
-      report.agents.clear();
-      for (auto const& agent : world.roster().agents) report.agents.push_back(agent.id);
-    }
-    report.decidedness = decidedness(report.candidates, report.chosen);
-    return report;
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    return plan_by_candidates(*this, view, memory, dt, workspace);
+  }
+  template <class View>
+  [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
+    return think_by_candidates(*this, view, memory, workspace);
   }
 
   template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
-    Plan<View> plan;
-    plan.status = PlanStatus::failed;
-    if constexpr (requires { view.predict(predict_all_as<typename PredictionWorld::Behaviors>(IdmClassic{})); }) {
-      auto const report = think(view, memory, workspace);
-      auto const ego = std::ranges::find(report.agents, view.id()) - report.agents.begin();
-      for (auto const& frame : report.course) {  // up to the first one that is not before the end of the step
-        if (frame.time > view.time()) plan.trajectory.push_back(frame.agents[static_cast<Slot>(ego)].state);
-        if (frame.time > view.time() + dt - 1e-9) break;
-      }
-      plan.status = PlanStatus::valid;
-      go_straight_on(view, view.time() + dt, plan);
+  [[nodiscard]] SearchProblem compare(View const& view, Memory const&, Workspace& workspace,
+                                      IterationBudget& clock) const {
+    using enum MacroAction::Kind;
+    auto const actions = MacroActions::of({{stay, -5.0}, {stay, 0.0}, {stay, -2.0}, {stay, 1.5}});
+    if (!workspace.predict(view, actions, IdmClassic{})) return SearchProblem::not_in_world;
+    auto& tried = workspace.candidates;
+    while (tried.size() < actions.size() && workspace.goes_on(clock, tried.size())) {
+      auto const number = tried.size();
+      tried.push_back({"accelerate by " + std::to_string(actions.actions[number].acceleration)});
+      try_out(workspace, number, nullptr);
+      bool const is_best = !workspace.chosen || tried[number].score > tried[*workspace.chosen].score;
+      if (tried[number].refused.empty() && is_best) workspace.chosen = number;
     }
-    return plan;
+    return SearchProblem::none;
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    begin(workspace, workspace.chosen.value_or(0));
+    return workspace.drive<MacroActions>(view, dt, step, memory);
+  }
+  template <class View>
+  [[nodiscard]] auto foresee(View const&, Memory const&, Workspace& workspace) const {
+    std::vector course{workspace.start};
+    try_out(workspace, workspace.chosen.value_or(0), &course);
+    return course;
+  }
+  template <class View>
+  [[nodiscard]] PlannerCandidate entry(View const&, Workspace const&, PlannerCandidate const& tried) const {
+    return tried;
+  }
+
+ private:
+  static void begin(Workspace& workspace, std::size_t action) {
+    workspace.world->restore(workspace.start);
+    workspace.world->memory<MacroActions>(workspace.world->roster().agents[workspace.ego].id).choose(action);
+  }
+  void try_out(Workspace& workspace, std::size_t action, std::vector<World::FrameType>* course) const {
+    begin(workspace, action);
+    auto const& agents = workspace.world->frame().agents;
+    double const start = agents[workspace.ego].lane.s;
+    workspace.simulate(static_cast<int>(std::lround(horizon / step)), step, course, [&](int) {
+      auto const end = course_end(*workspace.world, workspace.ego);
+      auto& tried = workspace.candidates[action];
+      tried.score = agents[workspace.ego].lane.s - start;
+      tried.refused = end == CourseEnd::none || end == CourseEnd::over ? "" : "ends badly";
+      return end == CourseEnd::none;
+    });
   }
 };
 
@@ -159,11 +147,7 @@ struct OwnLimits {
 };
 
 using Search = Mcts<PredictionWorld>;
-using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, HeadwayHypotheses<IdmClassic>>;
-using OwnActions = Mcts<PredictionWorld, Speeds>;
-using Proposal = ProposalPlanner<PredictionWorld>;
-using PolicyTree = PolicyTreePlanner<PredictionWorld>;
-using Frenet = FrenetPlanner<PredictionWorld>;
+using OwnActions = Mcts<World<BehaviorSet<ReachSpeed, IdmClassic>, InterpolateExecution, SingleTrack>, Speeds>;
 #define ALL_PLANNERS Search, Learning, OwnActions, Proposal, PolicyTree, Frenet, Greedy
 
 /// A planner with settings for quick tests.
@@ -177,15 +161,15 @@ P quick() {
   return planner;
 }
 
-/// Step and horizon of a planner [s].
+/// How far it predicts [s].
 template <class P>
-std::pair<double, double> times(P const& planner) {
+double horizon_of(P const& planner) {
   if constexpr (requires { planner.options; })
-    return {planner.options.step, planner.options.step * planner.options.hold * planner.options.search.horizon};
+    return planner.options.step * planner.options.hold * planner.options.search.horizon;
   else if constexpr (requires { planner.layers; })
-    return {planner.step, planner.layers * planner.layer_duration};
+    return planner.layers * planner.layer_duration;
   else
-    return {planner.step, planner.horizon};
+    return planner.horizon;
 }
 
 /// One world for all planners, so that it is compiled once, or one of its own.
@@ -195,7 +179,6 @@ using Sim = World<
     std::conditional_t<Planners::contains<Planner> && Observer::perfect, Planners, BehaviorSet<Planner, IdmClassic>>,
     InterpolateExecution, SingleTrack, Observer>;
 
-constexpr AgentId ego{0};
 #define COMMA ,
 
 /// Two lanes in a wide bend, with ego on the right one and six other agents around it.
@@ -269,18 +252,7 @@ TEST_CASE_TEMPLATE("it plans under noisy observation", Planner, Proposal, Policy
 TEST_CASE_TEMPLATE("it changes to the lane of its goal in traffic", Planner, PolicyTree, Frenet) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     CAPTURE(seed);
-    auto const map = support::straight_road(2, 600.0);
-    Sim<Planner> world(map, {.seed = seed});
-    auto const left = map->nearest_lane({20, -1.75, 0})->lane;
-    world.add({.position = {60, -5.25},
-               .speed = 12,
-               .behavior = Planner{},
-               .goal = LaneLimits{.lane = left, .left = 0.5, .right = 0.5, .heading_error = 0.08}});
-    for (int i = 0; i < 4; ++i)
-      world.add({.position = {20.0 + 28.0 * i + 3.0 * static_cast<double>(seed), -1.75},
-                 .speed = 12.5,
-                 .behavior = IdmClassic{.desired_speed = 14.0}});
-    world.add({.position = {95.0, -5.25}, .speed = 9, .behavior = IdmClassic{.desired_speed = 9.0}});
+    auto world = lane_change<Sim<Planner>>(seed, Planner{});
     for (int i = 0; i < 120 && !world.reached_goal(ego); ++i) REQUIRE(world.step(0.2));
     CHECK(world.reached_goal(ego));
   }
@@ -293,8 +265,7 @@ TEST_CASE_TEMPLATE("it plans for a goal of a user's own as for the same shipped 
     Sim<Planner> world(map, {.seed = 1});
     world.add({.position = {60, -5.25}, .speed = 12, .behavior = quick<Planner>(), .goal = wrapped(limits)});
     for (double const x : {20.0, 48.0, 85.0}) world.add({.position = {x, -1.75}, .speed = 12.5});
-    typename Planner::Workspace workspace;
-    return quick<Planner>().think(world.observe(ego), {}, workspace);
+    return report_of(quick<Planner>(), world);
   };
   auto const shipped = report([](LaneLimits const& limits) { return Goal(limits); });
   auto const own = report([](LaneLimits const& limits) { return Goal(OwnLimits{limits}); });
@@ -364,12 +335,11 @@ void check_places(World const& world, Report const& report) {
 
 TEST_CASE_TEMPLATE("its report has a course up to the horizon, and the reasons", Planner, ALL_PLANNERS) {
   auto const planner = quick<Planner>();
-  auto const [step, horizon] = times(planner);
+  double const step = step_of(planner), horizon = horizon_of(planner);
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     CAPTURE(seed);
     auto world = traffic<Sim<Planner>>(seed, planner);
-    typename Planner::Workspace workspace;
-    auto const report = planner.think(world.observe(ego), {}, workspace);
+    auto const report = report_of(planner, world);
     REQUIRE(report.course.size() > 1);
     CHECK(report.course.front().time == world.time());
     CHECK(report.course.back().time == doctest::Approx(world.time() + horizon));
@@ -405,17 +375,16 @@ TEST_CASE_TEMPLATE("it reports when there is nothing to plan or a parameter is n
   Sim<Planner> world(support::straight_road(1, 600.0));
   auto planner = quick<Planner>();
   world.add({.position = {590.0, -1.75}, .speed = 12, .behavior = planner});
-  typename Planner::Workspace workspace;
   for (int i = 0; i < 4; ++i) CHECK(world.step(0.5).failed == 0);
   REQUIRE(world.status(ego) != AgentStatus::driving);
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
+  CHECK_THROWS_AS((void)report_of(planner, world), SearchError);
   Sim<Planner> road(support::straight_road(1, 600.0));
   road.add({.position = {60.0, -1.75}, .speed = 12, .behavior = planner});
   if constexpr (requires { planner.options; })
     planner.options.step = std::nan("");
   else
     planner.step = std::nan("");
-  CHECK_THROWS_AS((void)planner.think(road.observe(ego), {}, workspace), ParameterError);
+  CHECK_THROWS_AS((void)report_of(planner, road), ParameterError);
   CHECK_THROWS_AS(road.add({.position = {90.0, -1.75}, .behavior = planner}), ParameterError);
 }
 
@@ -427,8 +396,7 @@ TEST_CASE_TEMPLATE("a budget cuts it short, and it plans with what it has found"
   auto world = traffic<Sim<Planner>>(1, planner);
   auto const weighed = [&](std::size_t most) {
     planner.budget.iterations = most;
-    typename Planner::Workspace workspace;
-    auto const report = planner.think(world.observe(ego), {}, workspace);
+    auto const report = report_of(planner, world);
     CHECK(report.is_cut_short == (most < 1000 && !std::is_same_v<Planner, Greedy> ? true : most < 4));
     CHECK(report.course.size() > 1);
     return std::ranges::count_if(report.candidates, [](auto const& c) { return c.refused != "unchecked"; });
@@ -453,8 +421,7 @@ TEST_CASE_TEMPLATE("with hardly any time it scores one candidate and plans", Pla
   else
     planner.budget.duration = 1e-6;
   auto world = traffic<Sim<Planner>>(1, planner);
-  typename Planner::Workspace workspace;
-  auto const report = planner.think(world.observe(ego), {}, workspace);
+  auto const report = report_of(planner, world);
   if constexpr (requires { report.result; })
     CHECK(report.result.iterations == 1);
   else

@@ -1,49 +1,12 @@
 #include "cambium/planner/policy/policy_tree_planner.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <numeric>
 #include <set>
 #include <vector>
 
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/execution/interpolate.hpp"
-#include "cambium/world/world.hpp"
-#include "support/allocations.hpp"
-#include "support/maps.hpp"
+#include "planner/planner_fixtures.hpp"
 
-using namespace cambium;
-
-namespace {
-
-using PredictionWorld = World<BehaviorSet<MacroActions>, InterpolateExecution, SingleTrack>;
-using Planner = PolicyTreePlanner<PredictionWorld>;
-using Sim = World<BehaviorSet<Planner, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
-static_assert(BehaviorModel<Planner>);
-
-constexpr AgentId ego{0};
-
-/// A road of `lanes` lanes with ego, agent 0, in the right one.
-Sim road(int lanes, std::uint64_t seed, double speed = 12.0, Planner const& planner = {}) {
-  Sim world(support::straight_road(lanes, 600.0), {.seed = seed});
-  world.add({.position = {40, -3.5 * lanes + 1.75}, .speed = speed, .behavior = planner});
-  return world;
-}
-
-/// Steps the world for a while and checks that no agent fails and ego touches nothing and stays on the road.
-void drive(Sim& world, int steps, double dt = 0.2) {
-  for (int i = 0; i < steps; ++i) {
-    auto const result = world.step(dt);
-    CHECK(result.failed == 0);
-    REQUIRE_FALSE(Collision{}(world, world.slot_of(ego)));
-    REQUIRE_FALSE(OffRoad{}(world, world.slot_of(ego)));
-  }
-}
-
-}  // namespace
+using namespace planner_fixtures;
 
 TEST_CASE("the tree has each sequence with at most one change exactly once") {
   for (std::size_t const actions : {1, 2, 9})
@@ -82,38 +45,12 @@ TEST_CASE("the probability of a lane change follows from the lateral speed by Ba
   }
 }
 
-TEST_CASE("it follows a slower leader and stops behind a standing one") {
-  for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    CAPTURE(seed);
-    double const slow = 2.5 * static_cast<double>(seed);
-    auto world = road(1, seed, 10.0 + static_cast<double>(seed));
-    world.add({.position = {110, -1.75}, .speed = slow, .behavior = ConstantAcceleration{}});
-    drive(world, 150);
-    CHECK(std::abs(world.state(ego).speed - slow) < 0.7);
-    CHECK(world.state(AgentId{1}).x - world.state(ego).x < 60.0);
-  }
-}
-
-TEST_CASE("it stops if the road is blocked and changes lanes if only its own lane is") {
-  for (int const lanes : {1, 2}) {
-    auto world = road(lanes, 0);
-    double const y = -3.5 * lanes + 1.75;
-    world.add_object(geometry::Polygon({{150, y - 1.7}, {154, y - 1.7}, {154, y + 1.7}, {150, y + 1.7}}));
-    drive(world, 120);
-    CAPTURE(lanes);
-    CHECK((world.state(ego).x > 160.0) == (lanes == 2));
-    if (lanes == 1) CHECK(world.state(ego).speed < 0.1);
-    if (lanes == 1) CHECK(world.state(ego).x > 100.0);
-  }
-}
-
 TEST_CASE("before an object that appears close ahead, it stops hard and reports an emergency") {
-  Planner::Workspace workspace;
-  auto world = road(1, 0, 14.0);
-  CHECK_FALSE(Planner{}.think(world.observe(ego), {}, workspace).is_emergency(ego));
+  auto world = road(1, 14.0, PolicyTree{});
+  CHECK_FALSE(report_of(PolicyTree{}, world).is_emergency(ego));
   double const x = world.state(ego).x + 22.0;  // a stop at 5 m/s^2, the hardest by car following, is too long
-  world.add_object(geometry::Polygon({{x, -3.4}, {x + 4, -3.4}, {x + 4, -0.1}, {x, -0.1}}));
-  auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+  world.add_object(obstacle(x, -1.75, -1.65, 1.65));
+  auto const report = report_of(PolicyTree{}, world);
   CHECK(report.is_emergency(ego, 5.5));
   CHECK_FALSE(report.is_emergency(AgentId{99}));
   drive(world, 40);
@@ -121,24 +58,23 @@ TEST_CASE("before an object that appears close ahead, it stops hard and reports 
 }
 
 TEST_CASE("branches are simulated under the intentions that matter to them") {
-  auto world = road(2, 0);
+  auto world = road(2, 12.0, PolicyTree{});
   world.add({.position = {52, -1.75}, .speed = 11, .behavior = ConstantAcceleration{}});  // may cut in
   world.add({.position = {28, -1.75}, .speed = 13, .behavior = ConstantAcceleration{}});  // may not yield
-  Planner::Workspace workspace;
-  auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+  auto const report = report_of(PolicyTree{}, world);
   REQUIRE(report.intentions.size() == 2);
   CHECK(report.intentions[0].intention == Intention::change_right);
   CHECK(report.intentions[1].intention == Intention::not_yield);
-  auto const kind = [](std::size_t action) { return Planner{}.actions.actions[action].kind; };
+  auto const kind = [](std::size_t action) { return PolicyTree{}.actions.actions[action].kind; };
   int changes = 0;
-  for (auto const& branch : report.branches) {
+  for (auto const& branch : report.details) {
     bool const left = kind(branch.sequence.first) == MacroAction::Kind::change_left ||
                       kind(branch.sequence.then) == MacroAction::Kind::change_left;
     changes += left ? 1 : 0;
     CHECK(branch.scenarios == (left ? 3 : 2));
     CHECK(branch.worst >= branch.expected);
     CHECK(branch.cost >= branch.expected);
-    CHECK(branch.cost >= report.branches[*report.chosen].cost);
+    CHECK(branch.cost >= report.details[*report.chosen].cost);
     CHECK(kind(branch.sequence.first) != MacroAction::Kind::change_right);  // there is no lane on the right
   }
   CHECK(changes > 10);
@@ -146,10 +82,9 @@ TEST_CASE("branches are simulated under the intentions that matter to them") {
 
 TEST_CASE("it expects a vehicle that is cutting in and lets it in") {
   auto const speed_beside = [](double heading) {
-    auto world = road(2, 0);
+    auto world = road(2, 12.0, PolicyTree{});
     world.add({.position = {54, -2.6}, .heading = heading, .speed = 9, .behavior = ConstantAcceleration{}});
-    Planner::Workspace workspace;
-    auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+    auto const report = report_of(PolicyTree{}, world);
     REQUIRE(report.intentions.size() == 1);
     CHECK((report.intentions[0].probability > 0.5) == (heading < 0.0));
     return report.course[10].agents[0].state.speed;
@@ -159,7 +94,7 @@ TEST_CASE("it expects a vehicle that is cutting in and lets it in") {
 
 TEST_CASE("it overtakes a slower leader and does not dither") {
   for (double const slow : {3.0, 5.0, 7.0}) {
-    auto world = road(2, 0);
+    auto world = road(2, 12.0, PolicyTree{});
     auto const leader = world.add({.position = {90, -5.25}, .speed = slow, .behavior = ConstantAcceleration{}});
     int turns = 0, last = 0;
     for (int i = 0; i < 75; ++i) {
@@ -177,17 +112,16 @@ TEST_CASE("it overtakes a slower leader and does not dither") {
 }
 
 TEST_CASE("a lane change into the outermost lane remains available until it is completed") {
-  auto world = road(2, 0);
+  auto world = road(2, 12.0, PolicyTree{});
   world.add({.position = {90, -5.25}, .speed = 5, .behavior = ConstantAcceleration{}});
-  Planner::Workspace workspace;
   int crossing = 0;
   for (int i = 0; i < 40; ++i) {
     drive(world, 1);
-    auto const& memory = world.memory<Planner>(ego);
+    auto const& memory = world.memory<PolicyTree>(ego);
     bool const has_crossed = world.state(ego).y > -3.5 && world.state(ego).y < -2.0;
     if (!has_crossed || !memory.change.active() || memory.is_new) continue;
-    auto const report = Planner{}.think(world.observe(ego), memory, workspace);
-    auto const& first = report.branches.front().sequence;
+    auto const report = report_of(PolicyTree{}, world, memory);
+    auto const& first = report.details.front().sequence;
     CHECK(first.first == memory.chosen);
     CHECK(first.then == memory.chosen);
     ++crossing;
@@ -198,17 +132,16 @@ TEST_CASE("a lane change into the outermost lane remains available until it is c
 TEST_CASE("the weight of the worst case decides which risk is taken") {
   // Ego is behind a slow vehicle; a faster one approaches on the left.
   auto const best_changes = [](double not_yield, double worst_case, double least_odds = 0.0) {
-    auto world = road(2, 0, 10.0);
+    auto world = road(2, 10.0, PolicyTree{});
     world.add({.position = {80, -5.25}, .speed = 6, .behavior = ConstantAcceleration{}});
     world.add({.position = {26, -1.75}, .speed = 13, .behavior = ConstantAcceleration{}});
-    Planner planner;
+    PolicyTree planner;
     planner.intentions.not_yield = not_yield;
     planner.weights.worst_case = worst_case;
     planner.weights.least_odds = least_odds;
     planner.weights.reaction_time = 0.0;  // small gaps are safe, collisions are not
     planner.weights.braking = 50.0;
-    Planner::Workspace workspace;
-    auto const report = planner.think(world.observe(ego), {}, workspace);
+    auto const report = report_of(planner, world);
     return report.candidates[*report.chosen].name.starts_with("change_left");
   };
   CHECK(best_changes(0.0, 0.0));
@@ -216,18 +149,4 @@ TEST_CASE("the weight of the worst case decides which risk is taken") {
   CHECK_FALSE(best_changes(0.0005, 1.0));
   CHECK(best_changes(0.0005, 1.0, 0.001));
   CHECK_FALSE(best_changes(0.9, 0.0));
-}
-
-TEST_CASE("faulty parameters are reported") {
-  auto world = road(1, 0);
-  Planner planner;
-  planner.actions.actions.clear();
-  CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .behavior = planner}), ParameterError);
-  planner = {};
-  planner.weights.safety = std::nan("");
-  Planner::Workspace workspace;
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
-  planner = {};
-  planner.actions = MacroActions::of({{MacroAction::Kind::change_left, 0.0, true}});
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
 }
