@@ -694,6 +694,7 @@ TEST_CASE("a planner does not fail if it leaves the map within a step or steps f
     auto const id = world.add({.position = {60, -1.75}, .speed = 12, .behavior = planner});
     CHECK(world.step(dt).failed == 0);
     CHECK((world.record(id).status == AgentStatus::left_map) == (dt == 20.0));
+    if (dt == 20.0) CHECK(std::string(to_string(world.record(id).status)) == "left the map");
   }
 }
 

@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <string>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <boost/container/static_vector.hpp>
 
-#include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/lane_change/lane_change.hpp"
 #include "cambium/behavior/law/lane_reach.hpp"
@@ -66,7 +62,7 @@ struct FrenetPlanner {
   using Memory = FrenetMemory;
   using Report = CandidateReport<World, Memory, FrenetCandidate>;
 
-  /// With a prediction of the other agents, made once, step by step. It does not depend on what ego does.
+  /// Also holds a prediction of the other agents, made once: it does not depend on what ego does.
   struct Workspace : CandidateWorkspace<World, FrenetCandidate> {
     std::vector<typename World::FrameType> frames;  ///< now and after each step
     std::vector<geometry::OrientedBox> boxes;       ///< of the agents in `to_avoid`, step by step

@@ -15,7 +15,7 @@
 
 namespace cambium {
 
-/// How a planner updates its beliefs about others by observation.
+/// How a planner updates its beliefs about others as it observes them.
 struct BeliefParameters {
   double forgetting = 0.02;
   double floor = 1e-3;

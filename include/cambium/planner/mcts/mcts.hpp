@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -224,7 +223,7 @@ struct Mcts {
     return workspace.run(std::move(domain), timed, seed);
   }
 
-  /// Adds those to `slots` who choose with ego.
+  /// Adds to `slots` the agents that choose with ego.
   void let_others_choose(PredictionWorld& world, std::vector<Slot>& slots) const {
     for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
       if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over

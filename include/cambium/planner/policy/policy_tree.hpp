@@ -169,7 +169,7 @@ struct PolicyCost {
   double terms{};       ///< negative sum of the planner's `terms`
 };
 
-/// How a `PolicyTreePlanner` weighs the parts of the cost, and what it takes for a safe gap.
+/// How a `PolicyTreePlanner` weighs the parts of the cost, and what counts as a safe gap.
 struct PolicyWeights {
   double efficiency = 1.0;
   double safety = 1.0;

@@ -4,13 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <boost/container/static_vector.hpp>
 
-#include "cambium/behavior/behavior_model.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/planner/candidate_planner.hpp"
 #include "cambium/planner/mcts/action_set.hpp"

@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <boost/container/static_vector.hpp>
 
-#include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/lane_change/idm_proposal.hpp"
 #include "cambium/evaluation/driving.hpp"
