@@ -29,8 +29,8 @@ std::vector<std::string> rooms() {
   return names;
 }
 
-/// Headers that stay out of the umbrellas: they need CLI11, pugixml, Eigen or POSIX, are for those who read, check or write
-/// maps and files or watch traffic rules, or only declare what other headers define.
+/// Headers that stay out of the umbrellas: they need CLI11, pugixml, Eigen or POSIX, are for those who read, check or
+/// write maps and files or watch traffic rules, or only declare what other headers define.
 bool needs_more(std::string const& header) {
   std::set<std::string> const apart{"benchmark/benchmark_main.hpp",
                                     "benchmark/benchmark_on_ranks.hpp",
