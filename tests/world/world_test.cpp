@@ -21,7 +21,7 @@ using namespace fixtures;
 
 namespace {
 
-double const not_a_number = std::numeric_limits<double>::quiet_NaN();
+double const undefined = std::numeric_limits<double>::quiet_NaN();
 
 /// The text of the error that `action` throws; empty if it throws none.
 template <class Action>
@@ -69,7 +69,7 @@ TEST_CASE("agents keep their lateral offset and follow curves") {
 TEST_CASE("an agent that cannot enter is named, and the world stays as it was") {
   Sim world(straight_road());
   auto const before = world.frame();
-  double const nan = not_a_number;
+  double const nan = undefined;
   cb::geometry::Point const on_road{10, -1.75};
   cb::LaneId const first{0};
   std::pair<Sim::AgentSpec, char const*> const cases[] = {
@@ -154,8 +154,8 @@ TEST_CASE("a step of 0 s, NaN, a negative time or more than an hour changes noth
   world.add({.position = {10, -1.75}, .speed = 5});
   CHECK(Sim(world).step(Sim::longest_step));
   auto const before = world.frame();
-  for (double dt : {0.0, -0.1, not_a_number, std::numeric_limits<double>::infinity(), 1e9,
-                    std::nextafter(Sim::longest_step, 1e9)}) {
+  for (double dt :
+       {0.0, -0.1, undefined, std::numeric_limits<double>::infinity(), 1e9, std::nextafter(Sim::longest_step, 1e9)}) {
     auto const result = world.step(dt);
     CHECK_FALSE(result.valid());
     CHECK(result.problem == cb::StepProblem::bad_duration);
@@ -174,7 +174,7 @@ struct Broken {
     cb::Plan<View> plan;
     auto next = view.state();
     next.time += how == How::too_short ? dt / 2 : dt;
-    if (how == How::not_a_number) next.x = not_a_number;
+    if (how == How::not_a_number) next.x = undefined;
     if (how == How::backwards) next.speed = -5.0;
     if (how == How::too_fast) next.speed = 1e9;
     plan.trajectory.push_back(view.state());
@@ -298,7 +298,7 @@ TEST_CASE("a state that add refuses set_state refuses with the same words, and b
     cb::State state;
     std::string said;
   };
-  double const pi = cb::geometry::pi, nan = not_a_number;
+  double const pi = cb::geometry::pi, nan = undefined;
   for (auto const& [state, said] : {
            Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -3}, "its speed is -3, not a number from 0 to 1000 m/s"},
            Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -0.11}, "its speed is -0.11, not"},
@@ -573,7 +573,7 @@ TEST_CASE("a prediction with parameters that make no sense is refused") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}});
   refuses("desired_speed", [&] {
-    (void)world.observe(id).predict(cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{.desired_speed = not_a_number}));
+    (void)world.observe(id).predict(cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{.desired_speed = undefined}));
   });
 }
 
