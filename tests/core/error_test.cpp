@@ -6,13 +6,10 @@
 
 using namespace cambium;
 
-TEST_CASE("an error says where, what and what to do") {
+TEST_CASE("an error says where, what and what to do, without stray punctuation") {
   MapError const error("merging.xodr:12", "lane -1 has no width", "add a <width> element");
   CHECK(std::string(error.what()) == "merging.xodr:12: lane -1 has no width; add a <width> element");
   CHECK(error.where() == "merging.xodr:12");
-}
-
-TEST_CASE("an error without a place or a remedy has no stray punctuation") {
   CHECK(std::string(Error("", "it failed").what()) == "it failed");
   CHECK(std::string(Error("here", "it failed").what()) == "here: it failed");
 }

@@ -10,13 +10,10 @@ static_assert(StrongId<AgentId> && StrongId<LaneId> && !StrongId<int>);
 static_assert(!std::is_convertible_v<AgentId, LaneId> && !std::is_convertible_v<AgentId, int>);
 static_assert(sizeof(AgentId) == 4);
 
-TEST_CASE("an id gives its number back, as an index and as text") {
+TEST_CASE("an id gives its number back, as an index and as text; none is no valid id and says so") {
   CHECK(index_of(LaneId{7}) == 7);
   CHECK(to_string(LaneId{7}) == "7");
   CHECK(AgentId{1} < AgentId{2});
-}
-
-TEST_CASE("none is no valid id and says so") {
   CHECK(is_valid(RoadId{0}));
   CHECK(!is_valid(none<RoadId>));
   CHECK(to_string(none<AgentId>) == "none");
