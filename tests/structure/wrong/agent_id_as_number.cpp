@@ -1,5 +1,3 @@
 // expect: AgentId
-#include <cambium/core/ids.hpp>
-
 // An id is no number and no other kind of id.
 cambium::AgentId agent = cambium::none<cambium::LaneId>;

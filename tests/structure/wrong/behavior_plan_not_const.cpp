@@ -1,6 +1,4 @@
 // expect: a behaviour's plan must be const: what it remembers is its Memory
-#include <cambium/behavior/behavior_set.hpp>
-
 struct Counting {
   int calls = 0;
   template <class View>

@@ -1,6 +1,4 @@
 // expect: a behaviour's plan must take (View const& view, Memory& memory, double dt)
-#include <cambium/behavior/behavior_set.hpp>
-
 // It names a Memory, and takes none.
 struct Confused {
   struct Memory {

@@ -1,6 +1,4 @@
 // expect: a behaviour's plan must return cambium::Plan<View>
-#include <cambium/behavior/behavior_set.hpp>
-
 // A trajectory is not yet a plan.
 struct Hasty {
   template <class View>

@@ -1,6 +1,4 @@
 // expect: a behaviour's plan must take (View const& view, Memory& memory, double dt)
-#include <cambium/behavior/behavior_set.hpp>
-
 struct Forgetful {
   template <class View>
   cambium::Plan<View> plan(View const&, double) const {

@@ -1,6 +1,4 @@
 // expect: each alternative must be a behaviour, and this one has no function plan
-#include <cambium/behavior/behavior_set.hpp>
-
 struct Dreamer {
   double desired_speed = 10.0;
 };

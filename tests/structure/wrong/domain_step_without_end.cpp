@@ -1,6 +1,4 @@
 // expect: cambium::TreeSearch<Domain>: Domain must be a game
-#include <cambium/planner/search/tree_search.hpp>
-
 struct Walk {
   using State = int;
   using Action = int;

@@ -1,6 +1,4 @@
 // expect: the models must have the same State
-#include "cambium/dynamics.hpp"
-
 int main() {
   cambium::DynamicSet<cambium::SingleTrack, cambium::TripleIntegrator> const set;
   return set.wheel_base() > 0.0;

@@ -1,4 +1,2 @@
 // expect: two numbers are no pose; give the heading too
-#include <cambium/map/map.hpp>
-
 bool is_on_lane(cambium::Map const& map) { return map.nearest_lane({10, -1.75}).has_value(); }

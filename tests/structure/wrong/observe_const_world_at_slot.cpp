@@ -1,9 +1,2 @@
 // expect: cambium::World::observe brings the traffic index up to date: call it on a world that is neither const nor a temporary
-#include <cambium/behavior/following/idm_classic.hpp>
-#include <cambium/dynamics/single_track.hpp>
-#include <cambium/execution/interpolate.hpp>
-#include <cambium/world/world.hpp>
-
-using World =
-    cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
-double time_of(World const& world) { return world.observe(cambium::Slot{0}).time(); }
+double time_of(Sim const& world) { return world.observe(cambium::Slot{0}).time(); }

@@ -1,6 +1,4 @@
 // expect: a number needs a unit and a range
-#include <cambium/core/described.hpp>
-
 struct Driver {
   double speed = 15.0;
 

@@ -1,8 +1,4 @@
 // expect: a struct's parameters() must return cambium::parameter_list(
-#include <tuple>
-
-#include "cambium/core/parameters.hpp"
-
 struct Old {
   double x = 0.0;
   static constexpr char const* name = "old";

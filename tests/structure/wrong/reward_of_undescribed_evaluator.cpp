@@ -1,6 +1,4 @@
 // expect: cambium::Terms<Evaluators...>: describe each evaluator's parameters, as cambium::Collision does
-#include "cambium/planner/mcts/traffic_reward.hpp"
-
 struct Mood {
   template <class World>
   double operator()(World const&, cambium::Slot) const {

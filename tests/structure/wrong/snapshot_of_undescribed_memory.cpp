@@ -1,24 +1,6 @@
 // expect: cambium: a snapshot holds only models and memories that describe their fields
-#include <cambium/snapshot.hpp>
-#include <cambium/world.hpp>
-#include <cambium/dynamics.hpp>
-#include <cambium/execution.hpp>
-
-struct Counts {
-  struct Memory {
-    int steps = 0;
-    friend bool operator==(Memory const&, Memory const&) = default;
-  };
-  static constexpr char const* name = "counts";
-  static constexpr auto parameters() { return cambium::parameter_list(); }
-  template <class View>
-  cambium::Plan<View> plan(View const& view, Memory& memory, double) const {
-    ++memory.steps;
-    cambium::Plan<View> plan;
-    plan.trajectory.push_back(view.state());
-    return plan;
-  }
+struct Memory {
+  int steps = 0;
+  friend bool operator==(Memory const&, Memory const&) = default;
 };
-using Sim = cambium::World<cambium::BehaviorSet<Counts>, cambium::InterpolateExecution, cambium::SingleTrack>;
-
-std::string save(Sim const& world) { return cambium::to_snapshot({}, world); }
+std::string save(WorldOf<Remembers<Memory>> const& world) { return cambium::to_snapshot({}, world); }
