@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <system_error>
@@ -15,6 +14,7 @@
 #include <doctest/doctest.h>
 
 #include "skipped.hpp"
+#include "text.hpp"
 
 /// Where the tests find maps: the project's own, and the public ones of the corpus (which may be absent).
 namespace corpus {
@@ -67,10 +67,7 @@ inline std::vector<std::filesystem::path> some_maps(std::initializer_list<char c
   return files;
 }
 
-inline std::string read(std::filesystem::path const& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+inline std::string read(std::filesystem::path const& path) { return support::content_of(path); }
 
 /// The cells of a comma-separated table, line by line, without the heading.
 inline std::vector<std::vector<std::string>> table(std::filesystem::path const& path) {

@@ -6,25 +6,28 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <unistd.h>
+
+#include "../support/skipped.hpp"
+#include "../support/text.hpp"
 
 /// Looks at HTML files through a headless Chromium, for tests.
 namespace browser {
 
-/// A Chromium of this machine, or nothing: then the test reports that it is skipped.
+/// A Chromium of this machine; without one nothing, and the test counts as skipped.
 inline std::optional<std::filesystem::path> find() {
   char const* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');)
+  for (auto const& folder : support::split(path == nullptr ? "" : path, ':'))
     for (char const* name : {"chromium", "chromium-browser", "google-chrome"})
       if (std::filesystem::path const file = std::filesystem::path(folder) / name; ::access(file.c_str(), X_OK) == 0)
         return file;
+  support::skip("no browser: install chromium");
   return std::nullopt;
 }
 
@@ -43,6 +46,7 @@ class TemporaryFolder {
     std::filesystem::remove_all(path_, ignored);
   }
   [[nodiscard]] std::filesystem::path const& path() const { return path_; }
+  [[nodiscard]] std::string file(std::string const& name) const { return (path_ / name).string(); }
 
  private:
   std::filesystem::path path_;
@@ -115,6 +119,12 @@ inline std::string attribute(std::string const& document, std::string const& tag
   std::size_t const at = text.find(key);
   if (at == std::string::npos) return {};
   return text.substr(at + key.size(), text.find('"', at + key.size()) - at - key.size());
+}
+
+/// The colours that a replay shows, as "r,g,b", where its address asks: `#probe=x,y;x,y`.
+inline std::vector<std::string> pixels(std::filesystem::path const& chromium, std::filesystem::path const& file,
+                                       std::string const& hash, std::string const& flags = {}) {
+  return support::split(attribute(document(chromium, file, hash, 1000, flags), "<body", "data-pixel"), ';');
 }
 
 }  // namespace browser

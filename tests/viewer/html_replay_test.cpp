@@ -12,18 +12,14 @@
 
 #include "cambium/core/write_file.hpp"
 #include "browser.hpp"
-#include "../support/skipped.hpp"
+#include "../support/text.hpp"
 #include "sample_recording.hpp"
 
 using namespace cambium;
+using support::count;
+using support::has;
 
 namespace {
-
-std::size_t occurrences(std::string const& text, std::string const& part) {
-  std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-  return count;
-}
 
 std::string data_of(std::string const& page) {
   std::string const start = "id=\"recording\">\n";
@@ -53,11 +49,6 @@ bool is_balanced(std::string const& json) {
   return open.empty() && !in_string;
 }
 
-std::string content_of(std::filesystem::path const& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 }  // namespace
 
 TEST_CASE("the same recording gives the same page, and it needs nothing from outside") {
@@ -65,7 +56,7 @@ TEST_CASE("the same recording gives the same page, and it needs nothing from out
   CHECK(page == html_replay(sample_recording()));
   for (char const* outside : {"http://", "https://", "src=", "<link", "@import", "url("}) {
     CAPTURE(outside);
-    CHECK(page.find(outside) == std::string::npos);
+    CHECK_FALSE(has(page, outside));
   }
 }
 
@@ -76,9 +67,9 @@ TEST_CASE("the page's data is balanced JSON with rounded numbers and one entry f
   recording.frames[2].poses[1].x = std::nan("");
   std::string const data = data_of(html_replay(recording));
   CHECK(is_balanced(data));
-  CHECK(data.find("[[12.33,0,0,10,0],0],\n[[14,0,0,10,0],0],\n[[16,0,0,10,0],[30,3.5,0,0,0]]") != std::string::npos);
-  CHECK(occurrences(data, "[30,3.5,0,0,0]]") == 19);
-  CHECK(data.find("nan") == std::string::npos);
+  CHECK(has(data, "[[12.33,0,0,10,0],0],\n[[14,0,0,10,0],0],\n[[16,0,0,10,0],[30,3.5,0,0,0]]"));
+  CHECK(count(data, "[30,3.5,0,0,0]]") == 19);
+  CHECK_FALSE(has(data, "nan"));
 }
 
 TEST_CASE("text of a recording cannot become markup or script") {
@@ -89,13 +80,13 @@ TEST_CASE("text of a recording cannot become markup or script") {
   recording.lanes[0].label = attack;
   recording.agents[0].label = attack;
   std::string const page = html_replay(recording), data = data_of(page);
-  CHECK(page.find("<script>alert") == std::string::npos);
-  CHECK(page.find("<!--") == std::string::npos);
-  CHECK(occurrences(page, "</script") == occurrences(html_replay(sample_recording()), "</script"));
-  CHECK(page.find('\xFF') == std::string::npos);
-  CHECK(page.find("&lt;/script&gt;") != std::string::npos);
+  CHECK_FALSE(has(page, "<script>alert"));
+  CHECK_FALSE(has(page, "<!--"));
+  CHECK(count(page, "</script") == count(html_replay(sample_recording()), "</script"));
+  CHECK_FALSE(has(page, "\xFF"));
+  CHECK(has(page, "&lt;/script&gt;"));
   CHECK(is_balanced(data));
-  CHECK(data.find("\\u003c/script\\u003e") != std::string::npos);
+  CHECK(has(data, "\\u003c/script\\u003e"));
 }
 
 TEST_CASE("a map in national coordinates is written near its own origin") {
@@ -106,7 +97,7 @@ TEST_CASE("a map in national coordinates is written near its own origin") {
     for (auto* border : {&lane.left, &lane.right})
       for (geometry::Point& p : *border) p += geometry::Point(691000.0, 5335000.0);
   std::string const page = html_replay(recording);
-  CHECK(page.find("\"origin\":[691000,5335000]") != std::string::npos);
+  CHECK(has(page, "\"origin\":[691000,5335000]"));
   std::string const data = data_of(page), near = data_of(html_replay(sample_recording()));
   CHECK(data.substr(data.find("\"lanes\"")) == near.substr(near.find("\"lanes\"")));
 }
@@ -134,16 +125,13 @@ TEST_CASE("writing replaces an older page as a whole") {
   std::filesystem::path const file = folder.path() / "replay.html";
   std::ofstream(file) << "old";
   write_html_replay(file, sample_recording());
-  CHECK(content_of(file) == html_replay(sample_recording()));
+  CHECK(support::content_of(file) == html_replay(sample_recording()));
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
 }
 
 TEST_CASE("a browser draws the page, plays it, and shows each vehicle where it is") {
   auto const chromium = browser::find();
-  if (!chromium) {
-    support::skip("no browser: install chromium");
-    return;
-  }
+  if (!chromium) return;
   browser::TemporaryFolder const folder;
   std::filesystem::path const file = folder.path() / "a replay #1.html";
   write_html_replay(file, sample_recording());
@@ -151,19 +139,14 @@ TEST_CASE("a browser draws the page, plays it, and shows each vehicle where it i
   std::string const last = browser::document(*chromium, file, "frame=20&probe=12,0;30,3.5;100,0;62,0");
 
   REQUIRE(browser::attribute(first, "<body", "data-ready") == "21");
-  CHECK(first.find("<title>a short drive</title>") != std::string::npos);
-  CHECK(first.find("<li>mean speed 10 m/s</li>") != std::string::npos);
+  CHECK(has(first, "<title>a short drive</title>"));
+  CHECK(has(first, "<li>mean speed 10 m/s</li>"));
   CHECK(browser::attribute(first, "<input id=\"slider\"", "max") == "20");
   CHECK(browser::attribute(first, "<body", "data-frame") == "0");
   CHECK(browser::attribute(last, "<body", "data-frame") == "20");
 
-  auto const colours = [](std::string const& page) {
-    std::istringstream text(browser::attribute(page, "<body", "data-pixel"));
-    std::vector<std::string> list;
-    for (std::string colour; std::getline(text, colour, ';');) list.push_back(colour);
-    return list;
-  };
-  std::vector<std::string> const at_first = colours(first), at_last = colours(last);
+  auto const at_first = support::split(browser::attribute(first, "<body", "data-pixel"), ';'),
+             at_last = support::split(browser::attribute(last, "<body", "data-pixel"), ';');
   REQUIRE(at_first.size() == 4);
   REQUIRE(at_last.size() == 4);
   std::string const ego = at_first[0], obstacle = at_first[1], asphalt = at_first[2];
@@ -183,22 +166,15 @@ TEST_CASE("traffic lights are kept where they change, and shown as they are") {
     recording.frames[k].lights = {LightColor::off, k < 10 ? LightColor::green : LightColor::red};
   std::string const data = data_of(html_replay(recording));
   CHECK(is_balanced(data));
-  CHECK(data.find("\"stops\":[[[100,1.75,100,-1.75],1],\n[[50,1.75,50,-1.75],-1]]") != std::string::npos);
-  CHECK(data.find("\"lights\":[[0,\"01\"],\n[10,\"03\"]]") != std::string::npos);
+  CHECK(has(data, "\"stops\":[[[100,1.75,100,-1.75],1],\n[[50,1.75,50,-1.75],-1]]"));
+  CHECK(has(data, "\"lights\":[[0,\"01\"],\n[10,\"03\"]]"));
   auto const chromium = browser::find();
-  if (!chromium) {
-    support::skip("no browser: install chromium");
-    return;
-  }
+  if (!chromium) return;
   browser::TemporaryFolder const folder;
   write_html_replay(folder.path() / "lights.html", recording);
   auto const seen = [&](char const* frame) {
-    auto const page =
-        browser::document(*chromium, folder.path() / "lights.html",
-                          std::string("follow=0&frame=") + frame + "&probe=100,0;101.2,0;50,0;51.2,0;80,0");
-    std::istringstream text(browser::attribute(page, "<body", "data-pixel"));
-    std::vector<std::string> list;
-    for (std::string colour; std::getline(text, colour, ';');) list.push_back(colour);
+    auto list = browser::pixels(*chromium, folder.path() / "lights.html",
+                                std::string("follow=0&frame=") + frame + "&probe=100,0;101.2,0;50,0;51.2,0;80,0");
     list.resize(5);
     return list;
   };
@@ -213,10 +189,7 @@ TEST_CASE("traffic lights are kept where they change, and shown as they are") {
 
 TEST_CASE("the replay runs by itself and stops at its end") {
   auto const chromium = browser::find();
-  if (!chromium) {
-    support::skip("no browser: install chromium");
-    return;
-  }
+  if (!chromium) return;
   browser::TemporaryFolder const folder;
   write_html_replay(folder.path() / "replay.html", sample_recording());
   std::string const page = browser::document(*chromium, folder.path() / "replay.html", "play", 2000);
@@ -231,10 +204,7 @@ TEST_CASE("the replay runs by itself and stops at its end") {
 
 TEST_CASE("two fingers zoom a replay and hold what lies between them, and its scale bar tells the truth") {
   auto const chromium = browser::find();
-  if (!chromium) {
-    support::skip("no browser: install chromium");
-    return;
-  }
+  if (!chromium) return;
   browser::TemporaryFolder const folder;
   write_file(folder.path() / "replay.html", browser::with_actions(html_replay(sample_recording()), "view", R"js(
 const context = target.getContext('2d'), [text, rule] = document.getElementById('scale').children;
@@ -280,18 +250,16 @@ later(() => {
 }
 
 TEST_CASE("a replay fits a phone's screen, and is dark where its reader prefers that") {
-  CHECK(html_replay(sample_recording())
-            .find("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">") != std::string::npos);
+  CHECK(
+      has(html_replay(sample_recording()), "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"));
   auto const chromium = browser::find();
-  if (!chromium) {
-    support::skip("no browser: install chromium");
-    return;
-  }
+  if (!chromium) return;
   browser::TemporaryFolder const folder;
   write_html_replay(folder.path() / "replay.html", sample_recording());
   auto const asphalt = [&](std::string const& flags) {
-    auto const page = browser::document(*chromium, folder.path() / "replay.html", "probe=100,0", 1000, flags);
-    return std::stoi("0" + browser::attribute(page, "<body", "data-pixel"));
+    auto const colours = browser::pixels(*chromium, folder.path() / "replay.html", "probe=100,0", flags);
+    REQUIRE(colours.size() == 1);
+    return std::stoi("0" + colours[0]);
   };
   CHECK(asphalt("") > 90);
   CHECK(asphalt(browser::dark) < 70);
@@ -302,13 +270,10 @@ TEST_CASE("an empty recording is a page that says so") {
   std::string const text = html_replay(Recording{});
   CHECK(is_balanced(data_of(text)));
   auto const chromium = browser::find();
-  if (!chromium) {
-    support::skip("no browser: install chromium");
-    return;
-  }
+  if (!chromium) return;
   browser::TemporaryFolder const folder;
   write_html_replay(folder.path() / "empty.html", Recording{});
   std::string const page = browser::document(*chromium, folder.path() / "empty.html");
   CHECK(browser::attribute(page, "<body", "data-ready") == "0");
-  CHECK(page.find(">This recording has no frames.</p>") != std::string::npos);
+  CHECK(has(page, ">This recording has no frames.</p>"));
 }

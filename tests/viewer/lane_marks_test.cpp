@@ -21,11 +21,15 @@ struct Lengths {
   double edge = 0.0, divider = 0.0, centre = 0.0;
 };
 
+std::vector<detail::LaneMark> marks_of(std::vector<RecordedLane> const& lanes) {
+  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
+  return detail::LaneMarker(lanes, areas).marks();
+}
+
 // Painted metres by style.
 Lengths lengths(std::vector<RecordedLane> const& lanes) {
-  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
   Lengths sum;
-  for (detail::LaneMark const& mark : detail::LaneMarker(lanes, areas).marks()) {
+  for (detail::LaneMark const& mark : marks_of(lanes)) {
     double length = 0.0;
     for (std::size_t i = 1; i < mark.points.size(); ++i) length += (mark.points[i] - mark.points[i - 1]).norm();
     (mark.style == MarkStyle::edge ? sum.edge : mark.style == MarkStyle::divider ? sum.divider : sum.centre) += length;
@@ -39,49 +43,43 @@ RecordedLane straight(double from, double to, double left, double right) {
 
 }  // namespace
 
-TEST_CASE("neighbours share one dashed line, and the road ends at solid ones") {
-  Lengths const sum = lengths({straight(0, 90, 3, 0), straight(0, 90, 0, -3)});
-  CHECK(sum.edge == doctest::Approx(180.0));
-  CHECK(sum.divider == doctest::Approx(90.0));
-  CHECK(sum.centre == 0.0);
-}
-
-TEST_CASE("lanes of opposite directions share a centre line, however their points run") {
-  std::vector<RecordedLane> lanes{straight(0, 90, 3, 0), straight(0, 90, 0, -3)};
-  lanes[0].forward = false;
-  CHECK(lengths(lanes).centre == doctest::Approx(90.0));
-  lanes[0] = straight(90, 0, 0, 3);
-  CHECK(lengths(lanes).centre == doctest::Approx(90.0));
-}
-
-TEST_CASE("a shoulder is behind a solid line") {
-  std::vector<RecordedLane> lanes{straight(0, 90, 3, 0), straight(0, 90, 0, -3)};
-  lanes[1].kind = RecordedLaneKind::other;
-  CHECK(lengths(lanes).edge == doctest::Approx(270.0));
-}
-
-TEST_CASE("a lane beside part of another gives a line that is dashed there only") {
-  Lengths const sum = lengths({straight(0, 90, 3, 0), straight(30, 60, 0, -3)});
-  CHECK(sum.divider == doctest::Approx(30.0));
-  CHECK(sum.edge == doctest::Approx(180.0));
-}
-
-TEST_CASE("borders within another lane, and second copies of a border, are not painted") {
-  CHECK(lengths({straight(0, 90, 3, 0), straight(0, 90, 2, 1)}).edge == doctest::Approx(180.0));
-  CHECK(lengths({straight(0, 90, 3, 0), straight(0, 90, 3, 0)}).edge == doctest::Approx(180.0));
-}
-
-TEST_CASE("a lane that has shrunk to nothing leaves the solid line to its neighbour") {
-  Lengths const sum = lengths({straight(0, 90, 0, 0), straight(0, 90, 0, -3)});
-  CHECK(sum.edge == doctest::Approx(180.0));
-  CHECK(sum.divider == 0.0);
+TEST_CASE("what lanes share is dashed, or a centre line between directions; what is beyond is solid, once") {
+  auto const with = [](RecordedLane lane, bool forward, RecordedLaneKind kind) {
+    lane.forward = forward;
+    lane.kind = kind;
+    return lane;
+  };
+  using Kind = RecordedLaneKind;
+  auto const upper = straight(0, 90, 3, 0), lower = straight(0, 90, 0, -3);
+  struct Case {
+    char const* what;
+    std::vector<RecordedLane> lanes;
+    Lengths expected;
+  };
+  Case const cases[] = {
+      {"neighbours", {upper, lower}, {180, 90, 0}},
+      {"opposite directions", {with(upper, false, Kind::driving), lower}, {180, 0, 90}},
+      {"opposite directions, by their points", {straight(90, 0, 0, 3), lower}, {180, 0, 90}},
+      {"a shoulder", {upper, with(lower, true, Kind::other)}, {270, 0, 0}},
+      {"a path outside the lanes", {upper, with(lower, true, Kind::way)}, {180, 0, 0}},
+      {"a lane beside part of another", {upper, straight(30, 60, 0, -3)}, {180, 30, 0}},
+      {"a lane within another", {upper, straight(0, 90, 2, 1)}, {180, 0, 0}},
+      {"a second copy", {upper, upper}, {180, 0, 0}},
+      {"a lane that has shrunk to nothing", {straight(0, 90, 0, 0), lower}, {180, 0, 0}},
+      {"a lane without two points on a side", {{.left = {{0, 3}, {90, 3}}, .right = {{0, 0}}}}, {0, 0, 0}}};
+  for (auto const& [what, lanes, expected] : cases) {
+    CAPTURE(what);
+    auto const sum = lengths(lanes);
+    CHECK(sum.edge == doctest::Approx(expected.edge));
+    CHECK(sum.divider == doctest::Approx(expected.divider));
+    CHECK(sum.centre == doctest::Approx(expected.centre));
+  }
 }
 
 TEST_CASE("a line goes on from lane to lane as one, so that its dashes keep their rhythm") {
   std::vector<RecordedLane> const lanes{straight(0, 30, 3, 0),   straight(0, 30, 0, -3), straight(60, 95, 3, 0),
                                         straight(60, 95, 0, -3), straight(30, 60, 3, 0), straight(30, 60, 0, -3)};
-  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
-  auto const marks = detail::LaneMarker(lanes, areas).marks();
+  auto const marks = marks_of(lanes);
   CHECK(marks.size() == 3);
   for (auto const& mark : marks) CHECK((mark.points.back() - mark.points.front()).norm() == doctest::Approx(95.0));
 }
@@ -95,8 +93,7 @@ TEST_CASE("a road has a solid line all along the taper of a lane") {
   shoulder.right = {{0, -5}, {90, -2}};
   shoulder.kind = RecordedLaneKind::other;
   std::vector<RecordedLane> const lanes{straight(0, 90, 3, 0), taper, shoulder};
-  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
-  auto const marks = detail::LaneMarker(lanes, areas).marks();
+  auto const marks = marks_of(lanes);
   for (double x = 1.0; x < 90.0; x += 0.5) {  // below the lane that goes on: the taper's border, or its own
     geometry::Point const border{x, -3.0 + x / 30.0};
     double nearest = 1e9;
@@ -137,19 +134,10 @@ TEST_CASE("the rim of a junction is painted, and nothing where ways cross within
 }
 
 TEST_CASE("lines between lanes go on through a junction where no way crosses them") {
-  auto const lanes = recorded_lanes(*support::own_map("merging.xodr"));
-  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
   double longest = 0.0;
-  for (auto const& mark : detail::LaneMarker(lanes, areas).marks())
+  for (auto const& mark : marks_of(recorded_lanes(*support::own_map("merging.xodr"))))
     if (mark.style == MarkStyle::divider) longest = std::max(longest, mark.points.back().x() - mark.points.front().x());
   CHECK(longest > 900.0);  // all along the carriageway of two lanes
-}
-
-TEST_CASE("lanes without two points on a side are skipped") {
-  std::vector<RecordedLane> lanes(2);
-  lanes[0].left = {{0, 3}, {90, 3}};
-  lanes[0].right = {{0, 0}};
-  CHECK(lengths(lanes).edge == 0.0);
 }
 
 TEST_CASE("a simplified line stays within its tolerance") {

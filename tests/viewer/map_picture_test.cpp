@@ -7,15 +7,13 @@
 
 #include "cambium/map/opendrive.hpp"
 #include "../map/road_text.hpp"
+#include "../support/maps.hpp"
+#include "../support/text.hpp"
+
+using support::count;
+using support::has;
 
 namespace {
-
-std::size_t count(std::string const& text, std::string const& part) {
-  std::size_t found = 0;
-  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-  return found;
-}
-bool has(std::string const& text, std::string const& part) { return count(text, part) > 0; }
 
 /// The value of the picture's attribute `name`.
 double attribute(std::string const& picture, std::string const& name) {

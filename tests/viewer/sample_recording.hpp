@@ -19,3 +19,23 @@ inline cambium::Recording sample_recording() {
   }
   return recording;
 }
+
+/// The same with a truck that brakes, a pedestrian, a car that enters late and collides, a stop line and a light, which
+/// turns from green to yellow to red.
+inline cambium::Recording busy_recording() {
+  using cambium::RecordedAgentKind;
+  using cambium::map::LightColor;
+  auto recording = sample_recording();
+  recording.agents.push_back({cambium::AgentId{11}, {7.0, 3.0, 1.2, 1.2}, "truck", RecordedAgentKind::merging});
+  recording.agents.push_back({cambium::AgentId{12}, {0.3, 0.3, 0.25, 0.25}, "walker", RecordedAgentKind::other});
+  recording.agents.push_back({cambium::AgentId{13}, {3.6, 1.0, 0.9, 0.9}, "", RecordedAgentKind::collided});
+  for (auto& frame : recording.frames) {
+    double const t = frame.time;
+    frame.poses.push_back({150.0 - 5.0 * t, 3.5, 3.125, 5.0, -3.0, true});
+    frame.poses.push_back({70.0, -4.0 + t, 1.5, 1.0, 0.0, true});
+    frame.poses.push_back({90.0, 0.0, 0.25, 5.0, -1.0, t > 1.0});
+    frame.lights = {LightColor::off, t < 1.0 ? LightColor::green : t < 2.0 ? LightColor::yellow : LightColor::red};
+  }
+  recording.stop_lines = {{{100.0, 1.75}, {100.0, -1.75}, cambium::LightId{1}}, {{50.0, 1.75}, {50.0, -1.75}}};
+  return recording;
+}

@@ -13,6 +13,7 @@
 #include "cambium/core/markup.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/viewer/detail/lane_marks.hpp"
+#include "cambium/viewer/detail/page_script.hpp"
 #include "cambium/viewer/detail/replay_controls.hpp"
 #include "cambium/viewer/detail/replay_page.hpp"
 #include "cambium/viewer/detail/replay_script.hpp"
@@ -191,18 +192,15 @@ inline std::string replay_header(Recording const& recording) {
 
 CAMBIUM_COLD std::string html_replay(Recording const& recording) {
   check_recording(recording);
-  std::string const title = detail::escape_markup(recording.title.empty() ? "Recording" : recording.title);
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
-  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  page += "<meta name=\"generator\" content=\"cambium\">\n<title>" + title + "</title>\n<style>";
+  std::string page = detail::page_begin(recording.title.empty() ? "Recording" : recording.title);
   page += detail::replay_style;
   page += "</style>\n</head>\n<body>\n" + detail::replay_header(recording);
   page += detail::replay_body;
   page +=
       "<script type=\"application/json\" id=\"recording\">\n" + detail::ReplayData(recording).json() + "\n</script>\n";
   page += "<script>(() => {";
-  page += detail::replay_scene_script;
-  page += detail::replay_controls_script;
+  for (auto const script : {detail::page_script, detail::replay_scene_script, detail::replay_controls_script})
+    page += script;
   page += "})();</script>\n</body>\n</html>\n";
   return page;
 }

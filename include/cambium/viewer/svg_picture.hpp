@@ -5,17 +5,15 @@
 #include <optional>
 #include <string>
 
-#include "cambium/geometry/pose.hpp"
 #include "cambium/viewer/recording.hpp"
 
 namespace cambium {
 
 /// What `svg_picture` shows.
 struct SvgOptions {
-  double width = 1200.0;                   ///< width of the picture [px], at least 100; the height follows from the map
-  bool labels = true;                      ///< title, lane labels and scale bars
-  std::optional<std::size_t> frame{};      ///< draws the vehicles of this frame
-  std::optional<geometry::Point> focus{};  ///< middle of the close-up [m]; default: the ego, a junction or a short lane
+  double width = 1200.0;               ///< width of the picture [px], at least 100; the height follows from the map
+  bool labels = true;                  ///< title, lane labels and scale bars
+  std::optional<std::size_t> frame{};  ///< draws the vehicles of this frame
 };
 
 /// A picture of the map as SVG text, with the vehicles of frame `options.frame` if that is set. North is up. If the map

@@ -106,12 +106,9 @@ class SvgPicture {
     return panels;
   }
 
-  /// Centres the close-up on its focus and turns it along the nearest driving lane.
+  /// Centres the close-up on the ego, a junction or a short lane, and turns it along the nearest driving lane.
   void aim(SvgPanel& close) const {
-    if (options_.focus)
-      close.middle = *options_.focus;
-    else if (!aim_at_vehicle(close))
-      aim_at_lane(close);
+    if (!aim_at_vehicle(close)) aim_at_lane(close);
     double best = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < areas_.size(); ++i) {
       if (areas_[i].empty() || recording_.lanes[i].kind != RecordedLaneKind::driving) continue;

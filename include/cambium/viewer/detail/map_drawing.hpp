@@ -9,6 +9,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
@@ -86,23 +88,28 @@ class MapDrawing {
       has_end = has_end || (lane.drivable() && lane.successors.empty());
       for (auto const& overlap : lane.overlaps) has_overlap[static_cast<std::size_t>(overlap.kind)] = true;
     }
-    auto const add = [&entries](bool is_there, LegendEntry const& entry) {
-      if (is_there) entries.push_back(entry);
+    auto const add = [&entries](bool is_there, std::string const& sample, std::string const& text) {
+      if (is_there) entries.push_back({sample, text});
     };
-    entries.push_back({LegendShape::area, "driving", "drivable lane"});
-    if (has_junction) entries.push_back({LegendShape::area, "driving junction", "in a junction"});
-    for (auto const type : types) entries.push_back({LegendShape::area, type, "lane of type " + std::string(type)});
-    if (options_.arrows) entries.push_back({LegendShape::arrow, "", "travel direction"});
-    add(options_.links && has_link, {LegendShape::link, "", "leads to"});
-    add(options_.links && has_begin, {LegendShape::dot, "begin", "starts, no predecessor"});
-    add(options_.links && has_end, {LegendShape::dot, "end", "ends, no successor"});
-    auto const overlaps = [&](map::OverlapKind kind) {
-      return options_.overlaps && has_overlap[static_cast<std::size_t>(kind)];
-    };
-    add(overlaps(map::OverlapKind::crossing), {LegendShape::stretch, "crossing", "crosses another lane"});
-    add(overlaps(map::OverlapKind::merge), {LegendShape::stretch, "merge", "merges with another"});
-    add(overlaps(map::OverlapKind::split), {LegendShape::stretch, "split", "splits from another"});
-    if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "shared area"});
+    add(true, area_sample("driving"), "drivable lane");
+    add(has_junction, area_sample("driving junction"), "in a junction");
+    for (auto const type : types) add(true, area_sample(std::string(type)), "lane of type " + std::string(type));
+    add(options_.arrows, lane_sample("arrows", "<path d=\"M.5.83H2.4V1.15L2.7.75 2.4.35V.67H.5Z\"/>"),
+        "travel direction");
+    add(options_.links && has_link,
+        lane_sample("links", "<path d=\"M.3.75H2.4\"/><path class=\"tip\" d=\"M2.7.75L2 1.05V.45Z\"/>"), "leads to");
+    for (auto const& [is_there, kind, text] :
+         {std::tuple(has_begin, "begin", "starts, no predecessor"), std::tuple(has_end, "end", "ends, no successor")})
+      add(options_.links && is_there,
+          std::string("<g class=\"links\"><g class=\"") + kind + "\"><circle cx=\"1.5\" cy=\".75\" r=\".5\"/></g></g>",
+          text);
+    for (auto const& [kind, text] : {std::pair(map::OverlapKind::crossing, "crosses another lane"),
+                                     std::pair(map::OverlapKind::merge, "merges with another"),
+                                     std::pair(map::OverlapKind::split, "splits from another")})
+      add(options_.overlaps && has_overlap[static_cast<std::size_t>(kind)],
+          lane_sample("overlaps", std::string("<path class=\"") + name_of(kind) + "\" d=\"M0 .75H3\"/>"), text);
+    add(options_.conflicts && has_junction, lane_sample("conflicts", "<path d=\"M.2 .2H2.8V1.3H.2Z\"/>"),
+        "shared area");
     return map_legend(entries, width);
   }
 
@@ -187,15 +194,18 @@ class MapDrawing {
       }
   }
 
-  void draw_overlaps() {
+  [[nodiscard]] static char const* name_of(map::OverlapKind kind) {
     static constexpr char const* names[] = {"merge", "split", "crossing"};
+    return names[static_cast<std::size_t>(kind)];
+  }
+
+  void draw_overlaps() {
     for (auto const id : lanes_) {
       auto const& lane = map_.lane(id);
       for (auto const& overlap : lane.overlaps)
-        out_ += std::string("<path class=\"") + names[static_cast<std::size_t>(overlap.kind)] + "\" d=\"" +
+        out_ += std::string("<path class=\"") + name_of(overlap.kind) + "\" d=\"" +
                 path(stretch(lane, overlap.begin, overlap.end)) + "\"><title>" + name_of(lane) + ": " +
-                names[static_cast<std::size_t>(overlap.kind)] + " with " + name_of(map_.lane(overlap.other)) +
-                "</title></path>\n";
+                name_of(overlap.kind) + " with " + name_of(map_.lane(overlap.other)) + "</title></path>\n";
     }
   }
 
@@ -271,9 +281,7 @@ class MapDrawing {
 
   /// A bar of a round length, at most 120 px long.
   void draw_scale_bar(double scale, double height) {
-    double const wanted = 120.0 / scale, power = std::pow(10.0, std::floor(std::log10(wanted)));
-    double const length = wanted >= 5 * power ? 5 * power : wanted >= 2 * power ? 2 * power : power;
-    double const pixel = 1.0 / scale;
+    double const length = round_length(120.0 / scale), pixel = 1.0 / scale;
     out_ += "<g class=\"scale\" transform=\"translate(" + svg_number(12 * pixel, 3) + ' ' +
             svg_number(height - 12 * pixel, 3) + ")\">" + svg_box(0, -3 * pixel, length, 3 * pixel, "") + "<text y=\"" +
             svg_number(-6 * pixel, 3) + "\" font-size=\"" + svg_number(12 * pixel, 3) + "\">" + svg_number(length) +

@@ -6,6 +6,7 @@
 #include "cambium/core/markup.hpp"
 #include "cambium/viewer/detail/map_legend.hpp"
 #include "cambium/viewer/detail/map_page_script.hpp"
+#include "cambium/viewer/detail/page_script.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"
 
 namespace cambium::detail {
@@ -98,12 +99,8 @@ inline constexpr std::string_view map_page_keys =
 /// The page around a map picture. `width`: of the legend [px].
 [[nodiscard]] inline std::string map_page(std::string_view title, std::string const& picture, double width,
                                           MapLegend const& legend) {
-  std::string const name = escape_markup(title);
-  std::string page =
-      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
-      (name.empty() ? "Map" : name) + "</title>\n<style>" + std::string(map_page_style) +
-      "</style></head>\n<body><nav><b>" + name + "</b>" + std::string(map_page_search);
+  std::string page = page_begin(title.empty() ? "Map" : title) + std::string(map_page_style) +
+                     "</style></head>\n<body><nav><b>" + escape_markup(title) + "</b>" + std::string(map_page_search);
   for (char const* layer : {"arrows", "labels", "links", "overlaps", "conflicts"})
     if (picture.find("<g class=\"" + std::string(layer) + '"') != picture.npos)
       page += std::string("<label><input type=\"checkbox\" checked name=\"") + layer + "\">" + layer + "</label>";
@@ -111,8 +108,8 @@ inline constexpr std::string_view map_page_keys =
     page += "<details id=\"legend\" open><summary>legend</summary><svg viewBox=\"0 0 " + svg_number(width) + ' ' +
             svg_number(legend.height) + "\">" + legend.text + "</svg></details>";
   return page + std::string(map_page_keys) + "</nav>\n" + picture +
-         "<div id=\"scale\" hidden><span></span><i></i></div>\n<script>" + std::string(map_page_script) +
-         "</script></body></html>\n";
+         "<div id=\"scale\" hidden><span></span><i></i></div>\n<script>(() => {" + std::string(page_script) +
+         std::string(map_page_script) + "})();</script></body></html>\n";
 }
 
 }  // namespace cambium::detail

@@ -7,9 +7,7 @@ namespace cambium::detail {
 /// The script of a map's page: pan, zoom, search and layers. The picture's view box always has the aspect ratio of the
 /// window, so that `view` alone defines what is shown: the point in the middle, in the picture's metres, and the pixels
 /// per metre. The address may end in `#at=X,Y,WIDTH` (map coordinates) or `#find=ID`.
-inline constexpr std::string_view map_page_script = R"js((() => {
-'use strict';
-const element = id => document.getElementById(id);
+inline constexpr std::string_view map_page_script = R"js(
 const map = element('map'), box = map.viewBox.baseVal, nav = document.querySelector('nav');
 const whole = {x: box.x, y: box.y, width: box.width, height: box.height};
 const view = {x: 0, y: 0, scale: 1};
@@ -26,11 +24,7 @@ function show() {
   box.height = height / view.scale;
   box.x = view.x - box.width / 2;
   box.y = view.y - box.height / 2;
-  const most = Math.min(120, width / 3) / view.scale, power = 10 ** Math.floor(Math.log10(most));
-  const metres = [5, 2, 1].find(f => f * power <= most) * power || power;
-  const [bar, rule] = element('scale').children;
-  bar.textContent = metres >= 1000 ? metres / 1000 + ' km' : Number(metres.toPrecision(1)) + ' m';
-  rule.style.width = metres * view.scale + 'px';
+  drawScale(Math.min(120, width / 3), view.scale);
 }
 // Shows `part` as large as it fits beside the panel, or below it where the window is narrow.
 function fit(part, most) {
@@ -72,43 +66,6 @@ function resize() {
   refit ? refit() : show();
 }
 
-map.addEventListener('wheel', event => {
-  event.preventDefault();
-  zoom(Math.exp(-event.deltaY * (event.ctrlKey ? .01 : event.deltaMode ? .05 : .0015)), event.clientX, event.clientY);
-}, {passive: false});
-const pointers = new Map();
-let moved = 0;   // [px] since the first pointer went down
-// The middle of all pointers, and how far they are apart.
-function grip() {
-  const all = [...pointers.values()], mean = i => all.reduce((sum, p) => sum + p[i], 0) / all.length;
-  const x = mean(0), y = mean(1);
-  return {x, y, span: all.length < 2 ? 1 : Math.max(1, Math.hypot(all[0][0] - all[1][0], all[0][1] - all[1][1]))};
-}
-map.addEventListener('pointerdown', event => {
-  if (event.button > 0) return;
-  map.setPointerCapture(event.pointerId);
-  if (!pointers.size) moved = 0;
-  pointers.set(event.pointerId, [event.clientX, event.clientY]);
-});
-map.addEventListener('pointermove', event => {
-  if (!pointers.has(event.pointerId)) return;
-  const last = grip();
-  pointers.set(event.pointerId, [event.clientX, event.clientY]);
-  const now = grip(), dx = now.x - last.x, dy = now.y - last.y;
-  moved += Math.hypot(dx, dy) + Math.abs(now.span - last.span);
-  if (moved < 4) return;
-  map.classList.add('dragging');
-  pan(dx, dy);
-  if (pointers.size > 1) zoom(now.span / last.span, now.x, now.y);
-});
-for (const end of ['pointerup', 'pointercancel'])
-  map.addEventListener(end, event => {
-    if (!pointers.delete(event.pointerId)) return;
-    if (pointers.size) return;
-    map.classList.remove('dragging');
-    if (end === 'pointerup' && moved < 4) tap(event);
-  });
-
 const lanes = [...map.querySelectorAll('[data-lane]')];
 const roadOf = lane => lane.dataset.lane.slice(0, lane.dataset.lane.lastIndexOf(':'));
 const kinds = {
@@ -132,8 +89,8 @@ function mark(some, text) {
   element('found').textContent = text;
 }
 // What has no pointer to rest on a lane taps it.
-function tap(event) {
-  const lane = document.elementFromPoint(event.clientX, event.clientY)?.closest('[data-lane]');
+function tap(x, y) {
+  const lane = document.elementFromPoint(x, y)?.closest('[data-lane]');
   mark(lane ? [lane] : [], lane ? lane.firstElementChild.textContent : '');
 }
 // "5:-1", "5", or with its kind where a road and a junction have the same id: "junction 5".
@@ -192,11 +149,12 @@ function obeyAddress() {
   show();
 }
 if (innerWidth < 700 && element('legend')) element('legend').open = false;
+watchPointers(map, {pan, zoom, tap});
 refit = fitWhole;
 resize();
 addEventListener('resize', resize);
 addEventListener('hashchange', obeyAddress);
 obeyAddress();
-})();)js";
+)js";
 
 }  // namespace cambium::detail

@@ -28,12 +28,6 @@ function putTip(tip, x, y) {
   tip.style.left = Math.max(4, Math.min(x + 16, width - tip.offsetWidth - 4)) + 'px';
   tip.style.top = Math.max(4, Math.min(y - tip.offsetHeight - 16, height - tip.offsetHeight - 4)) + 'px';
 }
-function drawScale() {
-  const most = 130 / camera.scale, power = 10 ** Math.floor(Math.log10(most));
-  const metres = [5, 2, 1].find(f => f * power <= most) * power;
-  element('scale').firstElementChild.textContent = metres >= 1000 ? metres / 1000 + ' km' : metres + ' m';
-  element('scale').lastElementChild.style.width = metres * camera.scale + 'px';
-}
 function drawClock() {
   const k = Math.min(Math.floor(state.at), count - 1);
   const strong = document.createElement('b'), where = document.createElement('span');
@@ -52,7 +46,7 @@ function draw() {
     for (const i of [...agents.keys()].sort((a, b) => (a === ego) - (b === ego))) drawAgent(i);
   }
   drawTip();
-  drawScale();
+  drawScale(130, camera.scale);
   drawClock();
   element('follow').checked = state.follow;
 }
@@ -129,55 +123,28 @@ function agentAt(x, y) {
   return -1;
 }
 
-const pointers = new Map();
-let moved = 0;
-const place = event => [event.offsetX, event.offsetY];
-canvas.addEventListener('pointerdown', event => {
-  canvas.setPointerCapture(event.pointerId);
-  pointers.set(event.pointerId, place(event));
-  moved = 0;
-});
-canvas.addEventListener('pointermove', event => {
-  const last = pointers.get(event.pointerId), [x, y] = place(event);
-  if (!last) {
-    state.hovered = count ? agentAt(x, y) : -1;
-    state.lane = state.hovered < 0 && state.selected < 0 ? laneAt(x, y) : null;
-    state.pointer = [x, y];
-    canvas.classList.toggle('over', state.hovered >= 0);
-    return redraw();
-  }
-  const other = [...pointers].find(([id]) => id !== event.pointerId);
-  pointers.set(event.pointerId, [x, y]);
-  moved += Math.abs(x - last[0]) + Math.abs(y - last[1]);
-  if (other) {
-    const [ox, oy] = other[1], gap = ([a, b]) => Math.max(1, Math.hypot(a - ox, b - oy));
-    if (!state.follow) {   // the middle of the fingers holds the map
-      camera.x -= (x - last[0]) / 2 / camera.scale;
-      camera.y += (y - last[1]) / 2 / camera.scale;
-    }
-    return zoom(gap([x, y]) / gap(last), (x + ox) / 2, (y + oy) / 2);
-  }
-  if (moved < 4) return;
-  state.follow = false;
+function pan(dx, dy, fingers) {
+  if (fingers < 2) state.follow = false;
   refit = null;
-  canvas.classList.add('dragging');
-  camera.x -= (x - last[0]) / camera.scale;
-  camera.y += (y - last[1]) / camera.scale;
+  if (!state.follow) {
+    camera.x -= dx / camera.scale;
+    camera.y += dy / camera.scale;
+  }
   redraw();
-});
-const release = event => {
-  pointers.delete(event.pointerId);
-  canvas.classList.remove('dragging');
-  if (event.type === 'pointerup' && moved < 4 && count) state.selected = agentAt(...place(event));
+}
+function hover(x, y) {
+  state.hovered = count ? agentAt(x, y) : -1;
+  state.lane = state.hovered < 0 && state.selected < 0 ? laneAt(x, y) : null;
+  state.pointer = [x, y];
+  canvas.classList.toggle('over', state.hovered >= 0);
   redraw();
-};
-canvas.addEventListener('pointerup', release);
-canvas.addEventListener('pointercancel', release);
+}
+function tap(x, y) {
+  if (count) state.selected = agentAt(x, y);
+  redraw();
+}
+watchPointers(canvas, {pan, zoom, tap, hover});
 canvas.addEventListener('pointerleave', () => { state.hovered = -1; state.lane = null; redraw(); });
-canvas.addEventListener('wheel', event => {
-  event.preventDefault();
-  zoom(Math.exp(-event.deltaY * (event.deltaMode ? .05 : .0015)), ...place(event));
-}, {passive: false});
 
 const showAll = () => { state.follow = false; fit(); redraw(); };
 element('play').addEventListener('click', () => { state.playing ? pause() : play(); });

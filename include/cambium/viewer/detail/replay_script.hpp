@@ -7,9 +7,7 @@ namespace cambium::detail {
 /// First half of the replay page's script: the data, the pose of an agent at any time, the camera and the drawing.
 /// Coordinates are metres relative to the recording's origin. `at` is a frame number, fractional between two frames.
 inline constexpr std::string_view replay_scene_script = R"js(
-'use strict';
 const data = JSON.parse(document.getElementById('recording').textContent);
-const element = id => document.getElementById(id);
 const canvas = element('view'), context = canvas.getContext('2d');
 const count = data.times.length, agents = data.agents.map(([id, kind, label, front, rear, left, right]) =>
   ({id, kind, label, front, rear, left, right, length: front + rear, width: left + right}));

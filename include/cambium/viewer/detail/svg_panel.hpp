@@ -41,10 +41,15 @@ struct SvgPanel {
   }
 };
 
+/// The largest length of one digit, 1, 2 or 5, that is at most `most`.
+[[nodiscard]] inline double round_length(double most) {
+  double const power = std::pow(10.0, std::floor(std::log10(most)));
+  return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
+}
+
 /// A scale bar of a round length in the panel's lower right corner, with its label.
 inline std::string svg_scale_bar(SvgPanel const& panel) {
-  double const most = 150.0 / panel.scale, power = std::pow(10.0, std::floor(std::log10(most)));
-  double const metres = power * (most >= 5 * power ? 5.0 : most >= 2 * power ? 2.0 : 1.0);
+  double const metres = round_length(150.0 / panel.scale);
   double const right = panel.left + panel.width - 14.0, left = right - metres * panel.scale;
   double const y = panel.top + panel.height - 12.0;
   return "<path d=\"M" + svg_number(left) + ' ' + svg_number(y - 5) + "V" + svg_number(y) + "H" + svg_number(right) +
