@@ -2,13 +2,12 @@
 
 #include <doctest/doctest.h>
 
-#include <map>
 #include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "../world/fixtures.hpp"
+#include "observed_traffic.hpp"
 #include "cambium/core/json.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/observer/observer_chain.hpp"
@@ -20,31 +19,10 @@ using namespace fixtures;
 
 namespace {
 
-using Behaviors = cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>;
-template <class Observer>
-using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack, Observer>;
-
 using Everything = cb::ObserverChain<cb::DelayedObserver<3>, cb::OccludedObserver, cb::ParametricObserver>;
 Everything const everything{
     cb::DelayedObserver<3>{.others = 2, .own = 1}, cb::OccludedObserver{.range = 80.0},
     cb::ParametricObserver{.own = {.along = 0.2}, .others = {.along = 0.5, .speed = 0.3}, .lasting = 4}};
-
-template <class Observer>
-World<Observer> traffic(Observer const& observer, std::uint64_t seed = 1) {
-  World<Observer> world(straight_road(2, 1000.0), {.seed = seed});
-  for (int i = 0; i < 8; ++i)
-    world.add({.position = {100 + 25.0 * i, i % 2 == 0 ? -1.75 : -5.25}, .speed = 8 + 0.5 * i, .observer = observer});
-  return world;
-}
-
-template <class World>
-std::map<cb::AgentId, cb::State> seen_by(World& world, cb::AgentId id) {
-  std::map<cb::AgentId, cb::State> seen;
-  auto const view = world.observe(id);
-  view.around(std::numeric_limits<double>::infinity(),
-              [&](auto const& other) { seen[other.agent] = view.state(other); });
-  return seen;
-}
 
 /// A stage that does not describe its parameters.
 struct Undescribed {
@@ -55,24 +33,23 @@ struct Undescribed {
 }  // namespace
 
 TEST_CASE("worlds that need no past keep none") {
-  CHECK(sizeof(World<cb::PerfectObserver>::Record) == sizeof(World<cb::ParametricObserver>::Record));
-  CHECK(sizeof(World<cb::PerfectObserver>::Record) == sizeof(World<cb::OccludedObserver>::Record));
-  CHECK(sizeof(World<cb::DelayedObserver<2>>::Record) == sizeof(World<cb::PerfectObserver>::Record) + 96);
+  CHECK(sizeof(Observed<cb::PerfectObserver>::Record) == sizeof(Observed<cb::ParametricObserver>::Record));
+  CHECK(sizeof(Observed<cb::PerfectObserver>::Record) == sizeof(Observed<cb::OccludedObserver>::Record));
+  CHECK(sizeof(Observed<cb::DelayedObserver<2>>::Record) == sizeof(Observed<cb::PerfectObserver>::Record) + 96);
 }
 
 TEST_CASE("others are seen exactly as they were some steps ago, and the agent itself likewise where asked for") {
   auto world = traffic(cb::DelayedObserver<5>{.others = 3, .own = 1});
   world.keep_history(10);
-  cb::AgentId const ego{2};
   for (std::size_t k = 0; k < 8; ++k) {
     std::size_t const late = std::min<std::size_t>(k, 3), own_late = std::min<std::size_t>(k, 1);
     auto const& then = late > 0 ? world.history(late) : world.frame();
     auto const& own_then = own_late > 0 ? world.history(own_late) : world.frame();
-    auto const seen = seen_by(world, ego);
+    auto const seen = seen_by(world, traffic_ego);
     CHECK(seen.size() == 7);
     for (auto const& [id, state] : seen) CHECK(state == then.agents[world.slot_of(id)].state);
-    CHECK(world.observe(ego).state() == own_then.agents[2].state);
-    auto const view = world.observe(ego);
+    CHECK(world.observe(traffic_ego).state() == own_then.agents[2].state);
+    auto const view = world.observe(traffic_ego);
     view.around(std::numeric_limits<double>::infinity(), [&](auto const& other) {
       CHECK(view.acceleration(other) == then.agents[world.slot_of(other.agent)].action.acceleration);
     });
@@ -89,18 +66,18 @@ TEST_CASE("an agent that has just entered, or come back, is seen as it entered")
   auto world = traffic(cb::DelayedObserver<3>{});
   for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto const late = world.add({.position = {400, -1.75}, .speed = 3});
-  cb::AgentId const ego{2};
-  CHECK(seen_by(world, ego).at(late) == world.state(late));
+  CHECK(seen_by(world, traffic_ego).at(late) == world.state(late));
   auto const entered = world.state(late);
   REQUIRE(world.step(0.2));
-  CHECK(seen_by(world, ego).at(late) == entered);
+  CHECK(seen_by(world, traffic_ego).at(late) == entered);
 }
 
 TEST_CASE("a prediction takes delayed observations for the present") {
   auto world = traffic(cb::DelayedObserver<3>{});
   for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
-  auto const seen = seen_by(world, cb::AgentId{2});
-  auto future = world.observe(cb::AgentId{2}).predict(cb::predict_all_as<Behaviors>(cb::ConstantAcceleration{}));
+  auto const seen = seen_by(world, traffic_ego);
+  auto future =
+      world.observe(traffic_ego).predict(cb::predict_all_as<decltype(world)::Behaviors>(cb::ConstantAcceleration{}));
   for (auto const& [id, state] : seen) {
     CHECK(future.state(id).x == state.x);
     CHECK(future.state(id).time == world.time());
@@ -115,7 +92,7 @@ TEST_CASE("copies, and worlds stepped on other threads, of late, blurred and sho
   auto assigned = traffic(everything, 7);
   assigned = world;
   CHECK(copy.frame() == world.frame());
-  std::vector<World<Everything>> others(4, world);
+  std::vector<Observed<Everything>> others(4, world);
   std::vector<std::thread> threads;
   for (auto& other : others)
     threads.emplace_back([&other] {
@@ -158,7 +135,7 @@ TEST_CASE("a chain's parameters have keys by the place of their stage, and are c
   CHECK(std::as_const(chain).stage<0>().own == 2);
   static_assert(!std::is_convertible_v<cb::ParametricObserver, cb::ObserverChain<cb::ParametricObserver>>);
   CHECK_FALSE(cb::equal_parameters(chain, everything));
-  World<Everything> world(straight_road(2, 1000.0));
+  Observed<Everything> world(straight_road(2, 1000.0));
   CHECK_THROWS_WITH_AS(
       world.add({.position = {100, -1.75}, .observer = Everything{{}, cb::OccludedObserver{.range = -1.0}, {}}}),
       doctest::Contains("second.range"), cb::ParameterError);
@@ -167,7 +144,7 @@ TEST_CASE("a chain's parameters have keys by the place of their stage, and are c
 TEST_CASE("a chain may have a stage without a description; the others are still checked") {
   using Mixed = cb::ObserverChain<Undescribed, cb::OccludedObserver>;
   static_assert(!cb::Described<Mixed> && cb::Described<Everything>);
-  World<Mixed> world(straight_road(2, 1000.0));
+  Observed<Mixed> world(straight_road(2, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .observer = Mixed{{}, cb::OccludedObserver{.range = 50.0}}});
   world.add({.position = {300, -1.75}});
   CHECK(seen_by(world, ego).empty());
@@ -178,7 +155,7 @@ TEST_CASE("a chain may have a stage without a description; the others are still 
 
 TEST_CASE("agents of one world perceive by observers of their own kinds") {
   using Set = cb::ObserverSet<cb::PerfectObserver, cb::DelayedObserver<2>, cb::OccludedObserver>;
-  World<Set> world(straight_road(1, 1000.0));
+  Observed<Set> world(straight_road(1, 1000.0));
   auto const sharp = world.add({.position = {100, -1.75}, .speed = 10});
   auto const late = world.add({.position = {150, -1.75}, .speed = 10, .observer = {cb::DelayedObserver<2>{}}});
   auto const near =
@@ -192,13 +169,13 @@ TEST_CASE("agents of one world perceive by observers of their own kinds") {
 }
 
 TEST_CASE("a chain that changes nothing shows the truth itself, and is no other than a perfect observer") {
-  World<cb::ObserverChain<cb::PerfectObserver, cb::PerfectObserver>> world(straight_road(2, 1000.0));
+  Observed<cb::ObserverChain<cb::PerfectObserver, cb::PerfectObserver>> world(straight_road(2, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
   world.add({.position = {130, -1.75}, .speed = 8});
   auto const view = world.observe(ego);
   CHECK(&view.state() == &world.state(ego));
   CHECK(view.ahead()->gap == 30 - 4.5);
-  World<cb::ObserverChain<cb::ParametricObserver, cb::DelayedObserver<2>>> blind(world.shared_map());
+  Observed<cb::ObserverChain<cb::ParametricObserver, cb::DelayedObserver<2>>> blind(world.shared_map());
   blind.add({.position = {100, -1.75},
              .speed = 10,
              .observer = {cb::ParametricObserver{}, cb::DelayedObserver<2>{.others = 0}}});

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "../world/fixtures.hpp"
+#include "observed_traffic.hpp"
 #include "cambium/core/distributions.hpp"
 
 using namespace fixtures;
@@ -30,6 +30,16 @@ struct Plane {
   [[nodiscard]] cb::IdVector<cb::StaticObject, cb::Slot> const& objects() const { return things; }
   [[nodiscard]] cb::geometry::OrientedBox box(std::uint32_t i) const {
     return cb::geometry::box_of(shapes[i], states[i]);
+  }
+
+  /// Those of vehicle `i`, or of an object behind the last vehicle.
+  [[nodiscard]] std::vector<Point> corners(std::size_t i) const {
+    if (i >= size()) {
+      auto const outline = things[static_cast<cb::Slot>(i - size())].outline.points();
+      return {outline.begin(), outline.end()};
+    }
+    auto const of_box = box(static_cast<std::uint32_t>(i)).corners();
+    return {of_box.begin(), of_box.end()};
   }
 
   [[nodiscard]] bool is_free(cb::geometry::OrientedBox const& place) const {
@@ -75,32 +85,28 @@ double hit(Point const& eye, Point const& ray, Point const& a, Point const& b) {
   return t >= 0 && u >= 0 && u <= 1 ? t : std::numeric_limits<double>::infinity();
 }
 
-/// By rays all around: how wide the widest clear stretch of each vehicle appears from vehicle 0 [rad].
+/// By rays all around: how wide the widest clear stretch of each body appears from vehicle 0 [rad].
 std::vector<double> widths_by_rays(Plane const& plane, cb::OccludedObserver const& observer, int rays) {
   auto const eye = plane.box(0).center();
-  std::vector<double> widest(plane.size(), 0.0), run(plane.size(), 0.0);
+  std::size_t const bodies = plane.size() + plane.things.size();
+  std::vector<double> widest(bodies, 0.0), run(bodies, 0.0), first(bodies);
   for (int k = 0; k < 2 * rays; ++k) {  // twice around, for stretches across the end
-    double const angle = 2 * pi * k / rays;
+    double const angle = 2 * pi * k / rays, infinite = std::numeric_limits<double>::infinity();
     Point const ray{std::cos(angle), std::sin(angle)};
-    double nearest = std::numeric_limits<double>::infinity();
-    std::uint32_t who = 0;
-    std::vector<std::pair<double, std::uint32_t>> hits;
-    for (std::uint32_t i = 1; i < plane.size(); ++i) {
-      auto const corners = plane.box(i).corners();
-      double first = std::numeric_limits<double>::infinity();
-      for (std::size_t c = 0; c < 4; ++c) first = std::min(first, hit(eye, ray, corners[c], corners[(c + 1) % 4]));
-      hits.emplace_back(first, i);
-      if (first < nearest) nearest = first, who = i;
+    double vehicle = infinite, object = infinite;  // the nearest ones
+    for (std::size_t i = 1; i < bodies; ++i) {
+      auto const corners = plane.corners(i);
+      first[i] = infinite;
+      for (std::size_t c = 0; c < corners.size(); ++c)
+        first[i] = std::min(first[i], hit(eye, ray, corners[c], corners[(c + 1) % corners.size()]));
+      auto& nearest = i < plane.size() ? vehicle : object;
+      nearest = std::min(nearest, first[i]);
     }
-    double wall = std::numeric_limits<double>::infinity();
-    for (auto const& object : plane.things)
-      for (std::size_t i = 0; i < object.outline.size(); ++i)
-        wall = std::min(wall, hit(eye, ray, object.outline.edge(i).first, object.outline.edge(i).second));
     bool const in_field =
         std::abs(std::remainder(angle - plane.states[0].heading, 2 * pi)) <= 0.5 * observer.field_of_view;
-    for (auto const& [first, i] : hits) {
-      bool const clear = in_field && first < std::numeric_limits<double>::infinity() &&
-                         (observer.behind_vehicles || i == who) && (observer.behind_objects || first < wall);
+    for (std::size_t i = 1; i < bodies; ++i) {
+      bool const clear = in_field && first[i] < infinite && (observer.behind_vehicles || first[i] <= vehicle) &&
+                         (observer.behind_objects || first[i] <= object);
       run[i] = clear ? run[i] + 2 * pi / rays : 0.0;
       widest[i] = std::max(widest[i], run[i]);
     }
@@ -112,71 +118,22 @@ struct Counts {
   int seen = 0, hidden = 0;
 };
 
-Counts compare(cb::OccludedObserver const& observer) {
+/// Of vehicles, or of static objects.
+Counts compare(cb::OccludedObserver const& observer, bool objects = false) {
   constexpr int rays = 3600;
   constexpr double step = 2 * pi / rays;
   Counts counts;
-  for (std::uint32_t number = 0; number < 60; ++number) {
-    auto const plane = sample(number);
+  for (std::uint32_t number = 0; number < (objects ? 30u : 60u); ++number) {
+    auto const plane = sample(number, objects ? 4 : 2);
     auto const widths = widths_by_rays(plane, observer, rays);
-    for (std::uint32_t i = 1; i < plane.size(); ++i) {
+    for (std::uint32_t i = objects ? plane.size() : 1; i < (objects ? widths.size() : plane.size()); ++i) {
       CAPTURE(number);
       CAPTURE(i);
-      bool const sees = observer.sees(plane, cb::Slot{}, cb::Slot{i});
-      double const distance = cb::geometry::distance(plane.box(i), plane.box(0).center());
+      bool const sees = objects ? observer.sees_object(plane, cb::Slot{}, cb::Slot{i - plane.size()})
+                                : observer.sees(plane, cb::Slot{}, cb::Slot{i});
+      double const distance = cb::geometry::distance(cb::geometry::Polygon(plane.corners(i)), plane.box(0).center());
       if (widths[i] > observer.resolution + 2 * step) CHECK(sees == (distance <= observer.range));
       if (widths[i] < observer.resolution - 2 * step) CHECK_FALSE(sees);
-      ++(sees ? counts.seen : counts.hidden);
-    }
-  }
-  return counts;
-}
-
-/// By rays all around: how wide the widest clear stretch of each static object appears from vehicle 0 [rad].
-std::vector<double> object_widths_by_rays(Plane const& plane, cb::OccludedObserver const& observer, int rays) {
-  auto const eye = plane.box(0).center();
-  std::vector<double> widest(plane.things.size(), 0.0), run(plane.things.size(), 0.0), first(plane.things.size());
-  for (int k = 0; k < 2 * rays; ++k) {
-    double const angle = 2 * pi * k / rays, infinite = std::numeric_limits<double>::infinity();
-    Point const ray{std::cos(angle), std::sin(angle)};
-    double vehicle = infinite, nearest = infinite;
-    for (std::uint32_t i = 1; i < plane.size() && !observer.behind_vehicles; ++i) {
-      auto const corners = plane.box(i).corners();
-      for (std::size_t c = 0; c < 4; ++c) vehicle = std::min(vehicle, hit(eye, ray, corners[c], corners[(c + 1) % 4]));
-    }
-    for (std::size_t o = 0; o < plane.things.size(); ++o) {
-      auto const& outline = plane.things[o].outline;
-      first[o] = infinite;
-      for (std::size_t i = 0; i < outline.size(); ++i)
-        first[o] = std::min(first[o], hit(eye, ray, outline.edge(i).first, outline.edge(i).second));
-      nearest = std::min(nearest, first[o]);
-    }
-    bool const in_field =
-        std::abs(std::remainder(angle - plane.states[0].heading, 2 * pi)) <= 0.5 * observer.field_of_view;
-    for (std::size_t o = 0; o < first.size(); ++o) {
-      bool const clear =
-          in_field && first[o] < vehicle && (observer.behind_objects || first[o] == nearest) && first[o] < infinite;
-      run[o] = clear ? run[o] + 2 * pi / rays : 0.0;
-      widest[o] = std::max(widest[o], run[o]);
-    }
-  }
-  return widest;
-}
-
-Counts compare_objects(cb::OccludedObserver const& observer) {
-  constexpr int rays = 3600;
-  constexpr double step = 2 * pi / rays;
-  Counts counts;
-  for (std::uint32_t number = 0; number < 30; ++number) {
-    auto const plane = sample(number, 4);
-    auto const widths = object_widths_by_rays(plane, observer, rays);
-    for (std::uint32_t o = 0; o < plane.things.size(); ++o) {
-      CAPTURE(number);
-      CAPTURE(o);
-      bool const sees = observer.sees_object(plane, cb::Slot{}, cb::Slot{o});
-      double const distance = cb::geometry::distance(plane.things[o].outline, plane.box(0).center());
-      if (widths[o] > observer.resolution + 2 * step) CHECK(sees == (distance <= observer.range));
-      if (widths[o] < observer.resolution - 2 * step) CHECK_FALSE(sees);
       ++(sees ? counts.seen : counts.hidden);
     }
   }
@@ -196,9 +153,6 @@ struct SeesEven {
   }
 };
 
-template <class Observer>
-using World = cb::World<cb::BehaviorSet<cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack, Observer>;
-
 }  // namespace
 
 TEST_CASE("intervals and rays hide the same agents") {
@@ -216,23 +170,21 @@ TEST_CASE("intervals and rays hide the same agents") {
 }
 
 TEST_CASE("vehicles behind a truck are hidden, and the next visible one is the neighbour") {
-  World<cb::OccludedObserver> world(straight_road(2, 1000.0));
+  Observed<cb::OccludedObserver> world(straight_road(2, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
   auto const truck = world.add({.position = {120, -1.75}, .speed = 10, .shape = cb::geometry::truck()});
   auto const hidden = world.add({.position = {140, -1.75}, .speed = 10});
   auto const beside = world.add({.position = {135, -5.25}, .speed = 10});
   auto const seen = [&](cb::AgentId id) {
     std::set<cb::AgentId> others;
-    world.observe(id).around(std::numeric_limits<double>::infinity(),
-                             [&](auto const& other) { others.insert(other.agent); });
+    for (auto const& [other, state] : seen_by(world, id)) others.insert(other);
     return others;
   };
   CHECK(seen(ego) == std::set{truck, beside});
   CHECK(seen(hidden) == std::set{truck, beside});
   CHECK(world.observe(ego).ahead()->agent == truck);
   CHECK(world.observe(truck).ahead()->agent == hidden);
-  auto const prediction =
-      world.observe(ego).predict(cb::predict_all_as<cb::BehaviorSet<cb::IdmClassic>>(cb::IdmClassic{}));
+  auto const prediction = world.observe(ego).predict(cb::predict_all_as<decltype(world)::Behaviors>(cb::IdmClassic{}));
   CHECK(prediction.size() == 3);
   CHECK_FALSE(prediction.roster().slot_of(hidden));
 
@@ -251,7 +203,7 @@ TEST_CASE("vehicles behind a truck are hidden, and the next visible one is the n
 
 TEST_CASE(
     "beyond its range an agent drives as if nobody were there; the next one in range is found behind a hidden one") {
-  World<cb::OccludedObserver> world(straight_road(1, 1000.0));
+  Observed<cb::OccludedObserver> world(straight_road(1, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .observer = {.range = 30.0, .field_of_view = 3.0}});
   world.add({.position = {140, -1.75}});
   CHECK_FALSE(world.observe(ego).ahead());
@@ -260,7 +212,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a neighbour behind one that is not seen is found") {
-  World<SeesEven> world(straight_road(2, 1000.0));
+  Observed<SeesEven> world(straight_road(2, 1000.0));
   for (int i = 0; i < 8; ++i) world.add({.position = {100 + 20.0 * i, -1.75}});
   auto const straddling = world.add({.position = {205, -3.3}});  // id 8
   auto const at = [&](std::uint32_t id) { return world.observe(static_cast<cb::AgentId>(id)); };
@@ -275,20 +227,20 @@ TEST_CASE("a neighbour behind one that is not seen is found") {
 }
 
 TEST_CASE("intervals and rays hide the same static objects") {
-  auto const usual = compare_objects({.resolution = 0.02});
+  auto const usual = compare({.resolution = 0.02}, true);
   CHECK(usual.seen > 50);
   CHECK(usual.hidden > 10);
-  CHECK(compare_objects({.resolution = 0.1}).hidden > usual.hidden);
-  CHECK(compare_objects({.resolution = 0.02, .behind_vehicles = true}).seen > usual.seen);
-  compare_objects({.resolution = 0.005, .behind_objects = true});
-  CHECK(compare_objects({.field_of_view = 2.0, .resolution = 0.02}).seen < usual.seen);
-  CHECK(compare_objects({.range = 15.0, .resolution = 0.02}).seen < usual.seen);
+  CHECK(compare({.resolution = 0.1}, true).hidden > usual.hidden);
+  CHECK(compare({.resolution = 0.02, .behind_vehicles = true}, true).seen > usual.seen);
+  compare({.resolution = 0.005, .behind_objects = true}, true);
+  CHECK(compare({.field_of_view = 2.0, .resolution = 0.02}, true).seen < usual.seen);
+  CHECK(compare({.range = 15.0, .resolution = 0.02}, true).seen < usual.seen);
   cb::OccludedObserver const knows{.range = 1.0, .objects_known = true};
   CHECK(knows.sees_object(sample(0), cb::Slot{0}, cb::Slot{1}));
 }
 
 TEST_CASE("an object behind a truck is no neighbour, and in no prediction, until it is seen") {
-  World<cb::OccludedObserver> world(straight_road(1, 1000.0));
+  Observed<cb::OccludedObserver> world(straight_road(1, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
   auto const truck = world.add({.position = {120, -1.75}, .speed = 10, .shape = cb::geometry::truck()});
   auto const hidden = world.add_object(cb::geometry::Polygon({{150, -2.5}, {152, -2.5}, {152, -1.0}, {150, -1.0}}));
@@ -307,8 +259,7 @@ TEST_CASE("an object behind a truck is no neighbour, and in no prediction, until
     if (is_valid(other.object)) near.push_back(other.object);
   });
   CHECK(near == std::vector{farther});
-  using Set = cb::BehaviorSet<cb::IdmClassic>;
-  auto prediction = world.observe(ego).predict(cb::predict_all_as<Set>(cb::IdmClassic{}));
+  auto prediction = world.observe(ego).predict(cb::predict_all_as<decltype(world)::Behaviors>(cb::IdmClassic{}));
   REQUIRE(prediction.roster().objects.size() == 1);
   CHECK(prediction.roster().objects[0].id == farther);
   CHECK(prediction.observe(truck).ahead()->object == farther);

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <string>
 
+#include "../support/parameter_rows.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/observer/delayed.hpp"
+#include "cambium/observer/occluded.hpp"
 
 namespace cb = cambium;
 
@@ -128,4 +131,32 @@ TEST_CASE("an error to the left lies to the left, whatever the heading; BARK's d
     CHECK(seen.x - truth.x == doctest::Approx(-std::sin(truth.heading)));  // BARK: + sin
     CHECK(seen.y - truth.y == doctest::Approx(std::cos(truth.heading)));
   }
+}
+
+TEST_CASE("observers have the documented defaults, units and ranges") {
+  CHECK(support::parameter_rows<cb::DelayedObserver<3>, cb::ObservationNoise, cb::OccludedObserver>() == &R"(
+delayed | others | 3 | - | [0, 3]
+delayed | own | 0 | - | [0, 3]
+observation_noise | mean_along | 0 | m | [-1000, 1000]
+observation_noise | mean_across | 0 | m | [-1000, 1000]
+observation_noise | mean_heading | 0 | rad | [-4, 4]
+observation_noise | mean_speed | 0 | m/s | [-1000, 1000]
+observation_noise | along | 0 | m | [0, 1000]
+observation_noise | across | 0 | m | [0, 1000]
+observation_noise | heading | 0 | rad | [0, 4]
+observation_noise | speed | 0 | m/s | [0, 1000]
+observation_noise | along_across | 0 | - | [-1, 1]
+observation_noise | along_heading | 0 | - | [-1, 1]
+observation_noise | along_speed | 0 | - | [-1, 1]
+observation_noise | across_heading | 0 | - | [-1, 1]
+observation_noise | across_speed | 0 | - | [-1, 1]
+observation_noise | heading_speed | 0 | - | [-1, 1]
+occluded | range | 150 | m | [0, 1e+06]
+occluded | field_of_view | 6.283185307179586 | rad | [0, 7]
+occluded | resolution | 0.001 | rad | [0, 1]
+occluded | behind_vehicles | false | - | -
+occluded | behind_objects | false | - | -
+occluded | objects_known | false | - | -
+)"[1]);
+  CHECK(support::parameter_rows<cb::ParametricObserver>().ends_with("\nparametric | lasting | 1 | - | [1, 1e+06]\n"));
 }

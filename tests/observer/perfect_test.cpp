@@ -3,9 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <map>
 
-#include "../world/fixtures.hpp"
+#include "observed_traffic.hpp"
 #include "cambium/behavior/following/idm_stochastic.hpp"
 #include "cambium/behavior/junction/intersection.hpp"
 #include "cambium/behavior/lane_change/idm_proposal.hpp"
@@ -52,32 +51,7 @@ struct Misplaced {
   }
 };
 
-using Behaviors = cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>;
-using Noisy = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack, Blurred>;
-using Clear = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
-
-/// One agent in the middle of traffic on two lanes.
-template <class World>
-struct Traffic {
-  World world;
-  AgentId ego;
-
-  explicit Traffic(std::uint64_t seed = 1) : world(straight_road(2, 1000.0), {.seed = seed}) {
-    for (int i = 0; i < 8; ++i)
-      world.add({.position = {100 + 25.0 * i, i % 2 == 0 ? -1.75 : -5.25}, .speed = 8 + 0.5 * i});
-    ego = static_cast<AgentId>(2);
-  }
-};
-
-/// What an agent sees of the others.
-template <class World>
-std::map<AgentId, cb::State> seen_by(World& world, AgentId id) {
-  std::map<AgentId, cb::State> seen;
-  auto const view = world.observe(id);
-  view.around(std::numeric_limits<double>::infinity(),
-              [&](auto const& other) { seen[other.agent] = view.state(other); });
-  return seen;
-}
+using Noisy = Observed<Blurred>;
 
 template <class World>
 double largest_error(World& world, AgentId id) {
@@ -90,39 +64,37 @@ double largest_error(World& world, AgentId id) {
 }  // namespace
 
 TEST_CASE("a perfect observer sees the truth itself, not a copy of it") {
-  Traffic<Clear> traffic;
-  auto& world = traffic.world;
-  CHECK(&world.observe(traffic.ego).state() == &world.state(traffic.ego));
-  auto const seen = seen_by(world, traffic.ego);
+  auto world = traffic(cb::PerfectObserver{});
+  CHECK(&world.observe(traffic_ego).state() == &world.state(traffic_ego));
+  auto const seen = seen_by(world, traffic_ego);
   CHECK(seen.size() == 7);
   for (auto const& [id, state] : seen) CHECK(state == world.state(id));
 }
 
 TEST_CASE(
     "a view shows the others as the agent's observer has them, the agent itself as it is, and leaves the truth alone") {
-  Traffic<Noisy> traffic;
-  auto& world = traffic.world;
+  auto world = traffic(Blurred{});
   auto const truth = world.frame();
-  auto const seen = seen_by(world, traffic.ego);
+  auto const seen = seen_by(world, traffic_ego);
   CHECK(seen.size() == 7);
   for (auto const& [id, state] : seen) {
     CHECK(state != world.state(id));
     CHECK(std::hypot(state.x - world.state(id).x, state.y - world.state(id).y) < 2.0);
   }
-  CHECK(world.observe(traffic.ego).state() == world.state(traffic.ego));
+  CHECK(world.observe(traffic_ego).state() == world.state(traffic_ego));
   CHECK(world.frame() == truth);
-  auto const front = world.observe(traffic.ego).ahead();
+  auto const front = world.observe(traffic_ego).ahead();
   REQUIRE(front.has_value());
   CHECK(front->speed == seen.at(front->agent).speed);
-  auto const& own = world.state(traffic.ego);
+  auto const& own = world.state(traffic_ego);
   CHECK(front->gap == doctest::Approx(seen.at(front->agent).x - own.x - 3.6 - 0.9));
-  auto const rear = world.observe(traffic.ego).behind();
+  auto const rear = world.observe(traffic_ego).behind();
   REQUIRE(rear.has_value());
   CHECK(rear->gap == doctest::Approx(own.x - seen.at(rear->agent).x - 3.6 - 0.9));
 }
 
 TEST_CASE("an agent that errs about itself errs about its lane position and its gaps alike") {
-  cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack, Misplaced> world(straight_road(2, 1000.0));
+  Observed<Misplaced> world(straight_road(2, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
   world.add({.position = {130, -1.75}, .speed = 10});
   world.add({.position = {80, -1.75}, .speed = 10});
@@ -139,13 +111,12 @@ TEST_CASE("an agent that errs about itself errs about its lane position and its 
 TEST_CASE(
     "errors are an agent's own: the same when it looks again, others for another agent, another step and another "
     "seed") {
-  Traffic<Noisy> traffic, other_seed(2);
-  auto& world = traffic.world;
-  auto const first = seen_by(world, traffic.ego);
-  CHECK(seen_by(world, traffic.ego) == first);
+  auto world = traffic(Blurred{}), other_seed = traffic(Blurred{}, 2);
+  auto const first = seen_by(world, traffic_ego);
+  CHECK(seen_by(world, traffic_ego) == first);
   Noisy copy = world;
-  CHECK(seen_by(copy, traffic.ego) == first);
-  CHECK(seen_by(other_seed.world, traffic.ego) != first);
+  CHECK(seen_by(copy, traffic_ego) == first);
+  CHECK(seen_by(other_seed, traffic_ego) != first);
   AgentId const another = static_cast<AgentId>(5), both_see = static_cast<AgentId>(0),
                 neighbor = static_cast<AgentId>(1);
   CHECK(first.at(both_see).x - world.state(both_see).x !=
@@ -153,23 +124,22 @@ TEST_CASE(
   CHECK(seen_by(world, another).at(both_see) != first.at(both_see));
   REQUIRE(world.step(0.2));
   auto const before = first.at(both_see).x - 100.0,
-             after = seen_by(world, traffic.ego).at(both_see).x - world.state(both_see).x;
+             after = seen_by(world, traffic_ego).at(both_see).x - world.state(both_see).x;
   CHECK(before != doctest::Approx(after));
 }
 
 TEST_CASE("a prediction begins with what the agent sees, and goes on without errors") {
-  Traffic<Noisy> traffic;
-  auto& world = traffic.world;
-  auto const seen = seen_by(world, traffic.ego);
-  auto future = world.observe(traffic.ego).predict(cb::predict_all_as<Behaviors>(cb::ConstantAcceleration{}));
-  CHECK(future.state(traffic.ego) == world.state(traffic.ego));
+  auto world = traffic(Blurred{});
+  auto const seen = seen_by(world, traffic_ego);
+  auto future = world.observe(traffic_ego).predict(cb::predict_all_as<Noisy::Behaviors>(cb::ConstantAcceleration{}));
+  CHECK(future.state(traffic_ego) == world.state(traffic_ego));
   for (auto const& [id, state] : seen) {
     CHECK(future.state(id) == state);
     auto const& at = future.record(id).lane;
     CHECK(at.s == doctest::Approx(state.x));
     CHECK(at.lateral == doctest::Approx(state.y - (at.corridor == cb::CorridorId{} ? -1.75 : -5.25)));
   }
-  CHECK(largest_error(future, traffic.ego) == 0.0);
+  CHECK(largest_error(future, traffic_ego) == 0.0);
   REQUIRE(future.step(0.5));
   for (auto const& [id, state] : seen) CHECK(future.state(id).x == doctest::Approx(state.x + 0.5 * state.speed));
 }
@@ -183,9 +153,9 @@ TEST_CASE("each agent of a world has an observer of its own") {
 }
 
 TEST_CASE("traffic of blurred eyes drives on") {
-  Traffic<Noisy> traffic;
-  for (int i = 0; i < 50; ++i) CHECK(traffic.world.step(0.2));
-  for (auto const& record : traffic.world.frame().agents) CHECK(record.status == cb::AgentStatus::driving);
+  auto world = traffic(Blurred{});
+  for (int i = 0; i < 50; ++i) CHECK(world.step(0.2));
+  for (auto const& record : world.frame().agents) CHECK(record.status == cb::AgentStatus::driving);
 }
 
 TEST_CASE_TEMPLATE("every kind of behaviour plans behind an observer that errs", Behavior, cb::Pedestrian,

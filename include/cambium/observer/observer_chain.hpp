@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <type_traits>
+#include <tuple>
 #include <utility>
 
 #include "cambium/core/described.hpp"
@@ -47,6 +47,8 @@ struct ObserverStages<std::index_sequence<i...>, Observers...> : ObserverStage<i
 template <ObserverModel... Observers>
 struct ObserverChain : detail::ObserverStages<std::index_sequence_for<Observers...>, Observers...> {
   using Stages = detail::ObserverStages<std::index_sequence_for<Observers...>, Observers...>;
+  template <std::size_t number>
+  using Stage = detail::ObserverStage<number, std::tuple_element_t<number, std::tuple<Observers...>>>;
 
   ObserverChain() = default;
   explicit(sizeof...(Observers) == 1) constexpr ObserverChain(Observers... stages) requires(sizeof...(Observers) > 0)
@@ -55,11 +57,11 @@ struct ObserverChain : detail::ObserverStages<std::index_sequence_for<Observers.
   /// The stage of that number.
   template <std::size_t number>
   [[nodiscard]] constexpr auto& stage() {
-    return observer_of<number>(*this);
+    return Stage<number>::observer;
   }
   template <std::size_t number>
   [[nodiscard]] constexpr auto const& stage() const {
-    return observer_of<number>(*this);
+    return Stage<number>::observer;
   }
 
   static constexpr char const* name = "observer_chain";
@@ -77,25 +79,14 @@ struct ObserverChain : detail::ObserverStages<std::index_sequence_for<Observers.
   template <class Scene>
   [[nodiscard]] bool sees(Scene const& scene, Slot own, Slot other) const
       requires(LimitedSight<Observers, Scene> || ...) {
-    auto const by = [&](auto const& stage) {
-      if constexpr (LimitedSight<std::remove_cvref_t<decltype(stage)>, Scene>)
-        return stage.sees(scene, own, other);
-      else
-        return true;
-    };
-    return this->with_stages([&](auto const&... stage) { return (by(stage) && ...); });
+    return this->with_stages([&](auto const&... stage) { return (sees_agent(stage, scene, own, other) && ...); });
   }
 
   template <class Scene>
   [[nodiscard]] bool sees_object(Scene const& scene, Slot own, Slot object) const
       requires(LimitedSightOfObjects<Observers, Scene> || ...) {
-    auto const by = [&](auto const& stage) {
-      if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(stage)>, Scene>)
-        return stage.sees_object(scene, own, object);
-      else
-        return true;
-    };
-    return this->with_stages([&](auto const&... stage) { return (by(stage) && ...); });
+    return this->with_stages(
+        [&](auto const&... stage) { return (cambium::sees_object(stage, scene, own, object) && ...); });
   }
 
   /// Returns a value, or a reference to the true state if all stages are perfect.
@@ -110,16 +101,6 @@ struct ObserverChain : detail::ObserverStages<std::index_sequence_for<Observers.
           [&](auto const&... stage) { ((seen = stage.observe(S(seen), own, random.part(number++))), ...); });
       return seen;
     }
-  }
-
- private:
-  template <std::size_t number, class Observer>
-  [[nodiscard]] static constexpr Observer& observer_of(detail::ObserverStage<number, Observer>& stage) {
-    return stage.observer;
-  }
-  template <std::size_t number, class Observer>
-  [[nodiscard]] static constexpr Observer const& observer_of(detail::ObserverStage<number, Observer> const& stage) {
-    return stage.observer;
   }
 };
 

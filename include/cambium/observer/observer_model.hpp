@@ -44,6 +44,23 @@ concept LimitedSightOfObjects = requires(O const observer, Scene const scene, Sl
   { observer.sees_object(scene, slot, slot) } -> std::convertible_to<bool>;
 };
 
+/// Whether an observer perceives the agent in slot `other`, or the static object with index `object`; true of one that
+/// hides none.
+template <class O, class Scene>
+[[nodiscard]] bool sees_agent(O const& observer, Scene const& scene, Slot own, Slot other) {
+  if constexpr (LimitedSight<O, Scene>)
+    return observer.sees(scene, own, other);
+  else
+    return true;
+}
+template <class O, class Scene>
+[[nodiscard]] bool sees_object(O const& observer, Scene const& scene, Slot own, Slot object) {
+  if constexpr (LimitedSightOfObjects<O, Scene>)
+    return observer.sees_object(scene, own, object);
+  else
+    return true;
+}
+
 /// Largest delay of observer type `O` [steps].
 template <class O>
 inline constexpr std::size_t past_steps_of = 0;

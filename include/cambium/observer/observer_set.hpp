@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/one_of.hpp"
@@ -26,23 +25,13 @@ struct ObserverSet : OneOf<Observers...> {
   template <class Scene>
   [[nodiscard]] bool sees(Scene const& scene, Slot own, Slot other) const
       requires(LimitedSight<Observers, Scene> || ...) {
-    return this->visit([&](auto const& one) {
-      if constexpr (LimitedSight<std::remove_cvref_t<decltype(one)>, Scene>)
-        return one.sees(scene, own, other);
-      else
-        return true;
-    });
+    return this->visit([&](auto const& one) { return sees_agent(one, scene, own, other); });
   }
 
   template <class Scene>
   [[nodiscard]] bool sees_object(Scene const& scene, Slot own, Slot object) const
       requires(LimitedSightOfObjects<Observers, Scene> || ...) {
-    return this->visit([&](auto const& one) {
-      if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(one)>, Scene>)
-        return one.sees_object(scene, own, object);
-      else
-        return true;
-    });
+    return this->visit([&](auto const& one) { return cambium::sees_object(one, scene, own, object); });
   }
 
   template <MotionState S>
