@@ -160,7 +160,7 @@ TEST_CASE("up to 1024 agents nothing is allocated, beyond one block") {
   }
 }
 
-TEST_CASE("static objects count like the twin says") {
+TEST_CASE("collisions with static objects are those of the twin") {
   int const collisions = compare({4, 60, 60, 0.5, 6}, 1000);
   CHECK(collisions > 100);
   CHECK(collisions < 900);
@@ -198,7 +198,7 @@ TEST_CASE("agents that have left traffic are not hit any more") {
   CHECK_FALSE(cb::Collision{}(world, world.slot_of(gone)));
 }
 
-TEST_CASE("within a margin counts as touching, to all sides, for agents and objects") {
+TEST_CASE("a distance below the margin counts as contact, ahead of agents and objects") {
   Sim world(straight_road(2));
   auto const a = world.slot_of(world.add({.position = {20, -1.75}, .shape = box(2, 2)}));
   world.add({.position = {25, -1.75}, .shape = box(2, 2)});  // 1 m ahead
@@ -211,7 +211,8 @@ TEST_CASE("within a margin counts as touching, to all sides, for agents and obje
   CHECK(cb::Collision{1.1}(other, b));
 }
 
-TEST_CASE("the agent that drives into a road user or object is at fault, not one that is hit standing or from behind") {
+TEST_CASE(
+    "the agent that drives into a road user or an object is at fault, not one that stands or is hit from behind") {
   Sim world(straight_road(1, 300));
   auto const rear = world.add({.position = {20, -1.75}, .speed = 10}), front = world.add({.position = {24, -1.75}});
   cb::AtFaultCollision const at_fault;
@@ -226,7 +227,7 @@ TEST_CASE("the agent that drives into a road user or object is at fault, not one
   CHECK(at_fault(world, world.slot_of(rear)));
 }
 
-TEST_CASE("with a look-ahead, a driver is to blame for whom it will hit if all keep their velocities") {
+TEST_CASE("with a look-ahead, a driver is at fault for the collisions that constant velocities lead to") {
   Sim world(straight_road(2, 300));
   auto const rear = world.slot_of(world.add({.position = {20, -1.75}, .speed = 10}));
   auto const front = world.slot_of(world.add({.position = {40, -1.75}, .speed = 2}));

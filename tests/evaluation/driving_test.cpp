@@ -280,6 +280,9 @@ TEST_CASE("gaps and times to collision are those of the next one ahead; one's ow
   CHECK(cb::RequiredDeceleration{}(world, ego) == 0.0);
   CHECK(cb::TimeToCollision{}(world, ego) == 60.0);
   CHECK(cb::Gap{.farthest = 10.0}(world, ego) == 10.0);
+  world.set_state(ahead, {.x = 42, .y = -1.75, .speed = 6});  // they touch
+  CHECK(cb::TimeToCollision{}(world, ego) == 0.0);
+  CHECK(cb::RequiredDeceleration{}(world, ego) == 50.0);
 }
 
 TEST_CASE("braking is seen although a behaviour does not report it") {
@@ -325,7 +328,7 @@ TEST_CASE("the true view shows what an agent would see with a perfect observer")
   }
 }
 
-TEST_CASE("a course that has not begun is not over, and what asks a view can end one") {
+TEST_CASE("a course that has not begun is not over, and an evaluator that uses a view can end one") {
   using Late = cb::World<cb::BehaviorSet<cb::ConstantAcceleration, cb::StaticTrajectory>, cb::InterpolateExecution,
                          cb::SingleTrack>;
   Late world(straight_road(1, 300));
@@ -340,6 +343,26 @@ TEST_CASE("a course that has not begun is not over, and what asks a view can end
   auto const late = world.slot_of(world.add({.position = {100, -1.75}, .behavior = cb::StaticTrajectory{recording}}));
   REQUIRE(world.frame().agents[late].status == cb::AgentStatus::not_started);
   CHECK(cb::course_end(world, late) == cb::CourseEnd::none);
+}
+
+TEST_CASE("the course of an agent that does not drive ends by its status") {
+  using Status = cb::AgentStatus;
+  for (auto const& [status, end] : {std::pair{Status::not_started, cb::CourseEnd::none},
+                                    {Status::arrived, cb::CourseEnd::over},
+                                    {Status::off_route, cb::CourseEnd::off_road},
+                                    {Status::left_map, cb::CourseEnd::over},
+                                    {Status::expired, cb::CourseEnd::over},
+                                    {Status::failed, cb::CourseEnd::off_road}}) {
+    CAPTURE(to_string(status));
+    auto roster = std::make_shared<Sim::RosterType>();
+    roster->agents.emplace_back();
+    roster->goals.emplace_back();
+    Sim::FrameType frame;
+    frame.agents.push_back({});
+    frame.agents[cb::Slot{0}].status = status;
+    Sim world(straight_road(1, 10), std::move(roster), std::move(frame));
+    CHECK(course_end(world, cb::Slot{0}) == end);
+  }
 }
 
 TEST_CASE("a course ends by a collision, off the road, in an oncoming lane, off its route, or where the map ends") {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/maps.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/evaluation/rules/formula.hpp"
@@ -135,12 +136,7 @@ Letters joined(Letters a, Letters const& b) {
 }
 
 std::string mistake(char const* text, std::vector<std::string> const& labels = {}) {
-  try {
-    Formula const formula(text, labels);
-  } catch (FormulaError const& error) {
-    return error.what();
-  }
-  return "none";
+  return support::error_of<FormulaError>([&] { Formula(text, labels); });
 }
 
 }  // namespace
@@ -228,7 +224,7 @@ TEST_CASE("a mistake in a formula is named with its column, and what was expecte
         "formula 'G lane_chage', column 3: there is no label 'lane_chage'; is it lane_change?");
   CHECK(mistake("G foo", {"lane_change", "near"}) ==
         "formula 'G foo', column 3: there is no label 'foo'; give one of lane_change, near");
-  CHECK(mistake("near & !lane_change", {"lane_change", "near"}) == "none");
+  CHECK(mistake("near & !lane_change", {"lane_change", "near"}) == "no error");
   std::string deep(250, '!');
   deep += 'a';
   CHECK(mistake(deep.c_str()).find("more than 200 operators in one another") != std::string::npos);
@@ -241,13 +237,8 @@ TEST_CASE("equal obligations are one state, and a formula that needs too many is
   CHECK(FormulaAutomaton("true").verdict(FormulaAutomaton::start) == RuleVerdict::satisfied);
   CHECK(FormulaAutomaton("a | !a").verdict(FormulaAutomaton::start) == RuleVerdict::satisfied);
   CHECK(FormulaAutomaton("X a & N !a").verdict(FormulaAutomaton::start) == RuleVerdict::violated);
-  auto const problem = [](Formula const& formula) -> std::string {
-    try {
-      FormulaAutomaton const automaton(formula);
-    } catch (FormulaError const& error) {
-      return error.what();
-    }
-    return "none";
+  auto const problem = [](Formula const& formula) {
+    return support::error_of<FormulaError>([&] { FormulaAutomaton{formula}; });
   };
   Formula last = "!X true";  // whether the label held a number of steps before the last one: a bit for each
   for (int i = 0; i < 8; ++i) last = next(last);

@@ -4,14 +4,16 @@
 #include <cambium/evaluation/metrics/per_agent.hpp>
 #include <cambium/evaluation/metrics/post_encroachment_time.hpp>
 #include <cambium/evaluation/metrics/rss_compliance.hpp>
-#include <cambium/evaluation/rules/safe_distance.hpp>
+#include <cambium/evaluation/rules.hpp>
 #include <cambium/cambium.hpp>
-#include <cambium/map/opendrive.hpp>
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
+
+#include "../support/maps.hpp"
 
 using namespace cambium;
 
@@ -21,12 +23,9 @@ using Sim = World<BehaviorSet<IdmClassic, ConstantAcceleration, StaticTrajectory
 static_assert(MetricFor<Least<Gap>, Sim> && MetricFor<PostEncroachmentTime, Sim> && MetricFor<Displacement, Sim> &&
               MetricFor<RssCompliance, Sim> && MetricFor<ClosedLoopScore, Sim>);
 
-std::shared_ptr<Map const> merging() { return load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map; }
-
 /// Two vehicles on the main road; the second follows.
 Sim following(double gap, double leader_speed, double follower_speed, Sim::Behavior follower) {
-  Sim world(merging());
-  world.keep_history(2);
+  Sim world(support::own_map("merging.xodr"));
   world.add({.position = {100, -1.75}, .speed = leader_speed, .behavior = ConstantAcceleration{}, .id = AgentId{1}});
   world.add({.position = {100 - gap - 4.5, -1.75}, .speed = follower_speed, .behavior = follower, .id = AgentId{2}});
   return world;
@@ -35,6 +34,7 @@ Sim following(double gap, double leader_speed, double follower_speed, Sim::Behav
 template <class Metric>
 Metric observed(Sim world, AgentId id, Metric metric, int steps, double dt = 0.1) {
   auto const slot = world.slot_of(id);
+  world.keep_history(1);  // a copy has none
   metric.observe(world, slot, 0.0);
   for (int i = 0; i < steps; ++i) {
     REQUIRE(world.step(dt));
@@ -112,73 +112,186 @@ TEST_CASE("how often an agent came too close: the static and the dynamic safe di
   CHECK(observed(following(9.0, 8.0, 8.0, ConstantAcceleration{}), id, keeps, 10).value() == 1.0);
 }
 
-TEST_CASE("post-encroachment time is the time between two vehicles at a crossing") {
-  Sim world(load_opendrive(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr").map);
-  // Recorded vehicles cross at the origin, `later` seconds one after the other.
-  for (double const later : {1.0, 2.5, 4.0}) {
-    auto crossing = world;
-    auto const along = [](double from_x, double from_y, double to_x, double to_y, double begin) {
-      double const heading = std::atan2(to_y - from_y, to_x - from_x);
-      return StaticTrajectory({{0.0, from_x, from_y, heading, 10.0},
-                               {begin + 0.01, from_x, from_y, heading, 10.0},
-                               {begin + 4.0, to_x, to_y, heading, 10.0}});
+TEST_CASE("post-encroachment time is the time between two vehicles at a crossing, up to 5 s, where ways cross") {
+  constexpr double infinite = std::numeric_limits<double>::infinity(), right = geometry::pi / 2;
+  // Recorded vehicles cross at `angle`, the second one `later` seconds after the first. At 10 m/s and a right angle the
+  // first one's rear is past the second one's way after 2.18 s, the second one's front reaches the first one's way
+  // 1.55 s after it has started.
+  struct Case {
+    double later, angle, expected;
+  };
+  for (auto const& [later, angle, expected] :
+       {Case{1.0, right, 0.42}, Case{2.5, right, 1.92}, Case{4.0, right, 3.42}, Case{5.5, right, 4.92},
+        Case{5.7, right, infinite}, Case{4.0, 0.52, 3.55}, Case{4.0, 0.48, infinite}}) {
+    CAPTURE(later);
+    CAPTURE(angle);
+    bool const is_junction = angle == right;
+    Sim crossing(is_junction ? support::own_map("intersection_4way.xodr") : support::straight_road(12, 300));
+    geometry::Point const middle = is_junction ? geometry::Point(1.75, -1.75) : geometry::Point(100.0, -21.0);
+    auto const add = [&](double heading, double begin, AgentId id) {
+      geometry::Pose const pose{middle.x(), middle.y(), heading};
+      auto const from = geometry::to_map(pose, {-20.0, 0}), to = geometry::to_map(pose, {20.0, 0});
+      crossing.add({.position = from,
+                    .heading = heading,
+                    .speed = 10.0,
+                    .behavior = StaticTrajectory({{0.0, from.x(), from.y(), heading, 10.0},
+                                                  {begin + 0.01, from.x(), from.y(), heading, 10.0},
+                                                  {begin + 4.0, to.x(), to.y(), heading, 10.0}}),
+                    .id = id});
     };
-    crossing.add({.position = {-20, -1.75},
-                  .heading = 0.0,
-                  .speed = 10.0,
-                  .behavior = along(-20, -1.75, 20, -1.75, 0.0),
-                  .id = AgentId{1}});
-    crossing.add({.position = {1.75, -20},
-                  .heading = geometry::pi / 2,
-                  .speed = 10.0,
-                  .behavior = along(1.75, -20, 1.75, 20, later),
-                  .id = AgentId{2}});
-    auto const one = observed(crossing, AgentId{1}, PostEncroachmentTime{}, 150, 0.05).value();
-    auto const other = observed(crossing, AgentId{2}, PostEncroachmentTime{}, 150, 0.05).value();
-    // At 10 m/s the first one's rear is past the second one's way after 2.36 s, the second one's front reaches the
-    // first one's way 1.38 s after it has started.
+    add(0.0, 0.0, AgentId{1});
+    add(angle, later, AgentId{2});
+    auto const one = observed(crossing, AgentId{1}, PostEncroachmentTime{}, 190, 0.05).value();
+    auto const other = observed(crossing, AgentId{2}, PostEncroachmentTime{}, 190, 0.05).value();
     CHECK(one == other);
-    CHECK(std::abs(one - (later - 0.98)) < 0.06);
+    if (expected == infinite)
+      CHECK(one == infinite);
+    else
+      CHECK(std::abs(one - expected) < 0.06);
   }
   CHECK(observed(following(10.0, 10.0, 10.0, ConstantAcceleration{}), AgentId{2}, PostEncroachmentTime{}, 60).value() ==
-        std::numeric_limits<double>::infinity());
+        infinite);
 }
 
-TEST_CASE("displacement is the distance from the recording") {
-  auto world = following(50.0, 10.0, 10.0, ConstantAcceleration{.acceleration = 1.0});
+TEST_CASE("displacement is the distance from the recording, in its time") {
+  auto world = following(50.0, 10.0, 10.0, ConstantAcceleration{});
   auto const& state = world.state(AgentId{2});
-  Displacement const metric(StaticTrajectory(
-      {{0.0, state.x, state.y, state.heading, 10.0}, {5.0, state.x + 50.0, state.y, state.heading, 10.0}}));
-  auto const result = observed(world, AgentId{2}, metric, 30);
-  CHECK(result.last() == doctest::Approx(0.5 * 3.0 * 3.0));
-  CHECK(result.most() == result.last());
-  CHECK(result.mean() == doctest::Approx(1.5).epsilon(0.05));
+  auto const at = [&](double time, double x) { return State{time, state.x + x, state.y, state.heading, 10.0}; };
+  Displacement const metric(StaticTrajectory({at(0.0, 0.0), at(1.0, 13.0), at(2.0, 20.0)}));  // 3 m ahead at 1 s
+  auto const result = observed(world, AgentId{2}, metric, 20, 0.125);
+  CHECK(result.last() == doctest::Approx(0.0));
+  CHECK(result.most() == doctest::Approx(3.0));
+  CHECK(result.mean() == doctest::Approx(24.0 / 17.0));  // of 17 frames
+  CHECK(result.value() == result.mean());
+  CHECK(observed(world, AgentId{2}, metric, 4, 0.125).last() == doctest::Approx(1.5));
   CHECK(observed(world, AgentId{2}, Displacement{}, 5).mean() == 0.0);
 }
 
-TEST_CASE("RSS compliance tells a driver who brakes from one who does not") {
-  auto const reckless = observed(following(25.0, 5.0, 20.0, ConstantAcceleration{}), AgentId{2}, RssCompliance{}, 10);
-  CHECK(reckless.dangers() > 0);
-  CHECK(reckless.violations() == 10);
-  CHECK(reckless.value() == 0.0);
-  auto const careful =
-      observed(following(25.0, 5.0, 20.0, ConstantAcceleration{.acceleration = -5.0}), AgentId{2}, RssCompliance{}, 10);
-  CHECK(careful.dangers() > 0);
-  CHECK(careful.value() == 1.0);
-  CHECK(observed(following(80.0, 10.0, 10.0, IdmClassic{}), AgentId{2}, RssCompliance{}, 30).value() == 1.0);
+TEST_CASE("RSS compliance tells a driver who brakes as hard as he must from one who does not") {
+  double const must = RssParameters{}.minimum_deceleration;
+  struct Case {
+    double gap, leader_speed, speed, acceleration;
+    int violations;
+  };
+  for (auto const& [gap, leader_speed, speed, acceleration, violations] :
+       {Case{25, 5, 20, 0, 10}, Case{25, 5, 20, -5, 0}, Case{25, 5, 20, -must + 5e-4, 0},
+        Case{25, 5, 20, -must + 2e-3, 10}, Case{0.3, 0, 0.04, 0, 0},
+        Case{0.3, 0, 0.06, 0, 10}}) {  // slower than 0.05 m/s is standing
+    CAPTURE(speed);
+    CAPTURE(acceleration);
+    auto const result =
+        observed(following(gap, leader_speed, speed, ConstantAcceleration{.acceleration = acceleration}), AgentId{2},
+                 RssCompliance{}, 10);
+    CHECK(result.dangers() > 0);
+    CHECK(result.violations() == violations);
+    CHECK(result.value() == doctest::Approx(1.0 - violations / 10.0));
+  }
+  auto const calm = observed(following(80.0, 10.0, 10.0, IdmClassic{}), AgentId{2}, RssCompliance{}, 30);
+  CHECK(calm.dangers() == 0);
+  CHECK(calm.value() == 1.0);
 }
 
-TEST_CASE("the closed-loop score punishes each fault") {
-  auto const score = [](Sim const& world, double expected = 0.0, int steps = 50) {
-    return observed(world, AgentId{2}, ClosedLoopScore(expected), steps).value();
+namespace {
+
+double score_of(Sim const& world, double expected = 0.0, int steps = 50, double dt = 0.1) {
+  return observed(world, AgentId{2}, ClosedLoopScore(expected), steps, dt).value();
+}
+
+/// A world in which agent 2 drives as recorded: these accelerations and yaw rates, step by step, in the middle lane.
+Sim driven(double speed, std::vector<double> const& accelerations, std::vector<double> const& yaw_rates) {
+  State state{0.0, 100.0, -5.25, 0.0, speed};
+  std::vector<State> states{state};
+  for (std::size_t i = 0; i < accelerations.size(); ++i) {
+    state.speed += 0.1 * accelerations[i];
+    state.heading += 0.1 * yaw_rates[i];
+    state.time += 0.1;
+    state.x += 0.1 * state.speed;
+    states.push_back(state);
+  }
+  Sim world(support::straight_road(3, 500));
+  world.add({.position = {100.0, -5.25}, .speed = speed, .behavior = StaticTrajectory(states), .id = AgentId{2}});
+  return world;
+}
+
+}  // namespace
+
+TEST_CASE("the closed-loop score punishes each fault by nuPlan's bounds and weights") {
+  auto const calm = following(80.0, 10.0, 10.0, ConstantAcceleration{});  // 50 m in 5 s
+  auto const closing = [](double gap, double speed, double leader_speed) {
+    return score_of(following(gap, leader_speed, speed, ConstantAcceleration{}), 0.0, 0);
   };
-  auto const calm = following(80.0, 10.0, 10.0, ConstantAcceleration{});
-  CHECK(score(calm) == 1.0);
-  CHECK(score(calm, 50.0) == doctest::Approx(1.0));
-  CHECK(score(calm, 100.0) == doctest::Approx((16.0 - 2.5) / 16.0));
-  CHECK(score(calm, 1000.0) == 0.0);
-  CHECK(score(following(10.0, 5.0, 20.0, ConstantAcceleration{})) == 0.0);  // hits the leader
-  CHECK(score(following(10.0, 10.0, 20.0, ConstantAcceleration{}), 0.0, 5) == doctest::Approx(11.0 / 16.0));  // close
-  CHECK(score(following(90.0, 10.0, 10.0, ConstantAcceleration{.acceleration = 3.0}), 0.0, 5) ==
-        doctest::Approx(14.0 / 16.0));  // uncomfortable
+  CHECK(score_of(following(10.0, 5.0, 20.0, ConstantAcceleration{})) == 0.0);  // hits the leader
+  CHECK(score_of(calm) == 1.0);
+  CHECK(score_of(calm, 50.0) == doctest::Approx(1.0));
+  CHECK(score_of(calm, 100.0) == doctest::Approx((16.0 - 2.5) / 16.0));
+  CHECK(score_of(calm, 249.0) == doctest::Approx((11.0 + 5.0 * 50.0 / 249.0) / 16.0));
+  CHECK(score_of(calm, 251.0) == 0.0);  // less than a fifth of the way
+  CHECK(closing(9.6, 20.0, 10.0) == 1.0);
+  CHECK(closing(9.4, 20.0, 10.0) == doctest::Approx(11.0 / 16.0));  // a time to collision below 0.95 s
+  CHECK(closing(0.03, 0.06, 0.0) == doctest::Approx(11.0 / 16.0));
+  CHECK(closing(0.02, 0.04, 0.0) == 1.0);  // it stands
+
+  Sim off(support::straight_road(1, 300));
+  off.add({.position = {100, -3.2}, .speed = 5.0, .behavior = ConstantAcceleration{}, .id = AgentId{2}});
+  CHECK(score_of(off, 0.0, 1) == 0.0);
+
+  auto const limited = support::own_map("lane_drop.xodr");
+  for (double const excess : {0.0, 1.115, 2.23, 3.0}) {
+    CAPTURE(excess);
+    Sim fast(limited);
+    double const limit = limited->lane(limited->nearest_lane({50, -1.75, 0})->lane).speed_limit_at(50);
+    fast.add({.position = {50, -1.75}, .speed = limit + excess, .behavior = ConstantAcceleration{}, .id = AgentId{2}});
+    CHECK(score_of(fast, 0.0, 10) == doctest::Approx((12.0 + 4.0 * std::max(0.0, 1.0 - excess / 2.23)) / 16.0));
+  }
+}
+
+TEST_CASE("the closed-loop score calls comfortable what is within each of nuPlan's bounds") {
+  struct Case {
+    std::string bound;
+    double speed;
+    std::vector<double> accelerations, yaw_rates;
+    bool is_comfortable;
+  };
+  std::vector<double> const none{0, 0, 0};
+  for (auto const& [bound, speed, accelerations, yaw_rates, is_comfortable] :
+       {Case{"acceleration", 10, {2.39, 2.39, 2.39}, none, true},
+        Case{"acceleration", 10, {2.41, 2.41, 2.41}, none, false},
+        Case{"braking", 10, {-4.04, -4.04, -4.04}, none, true}, Case{"braking", 10, {-4.06, -4.06, -4.06}, none, false},
+        Case{"jerk", 10, {0, 0.412, 0}, none, true}, Case{"jerk", 10, {0, 0.414, 0.414}, none, false},
+        Case{"jerk", 10, {0, -0.414, -0.414}, none, false}, Case{"lateral", 10, none, {0.488, 0.488, 0.488}, true},
+        Case{"lateral", 10, none, {0.49, 0.49, 0.49}, false}, Case{"lateral", 10, none, {-0.49, -0.49, -0.49}, false},
+        Case{"yaw rate", 2, none, {0.949, 0.949, 0.949}, true},
+        Case{"yaw rate", 2, none, {-0.951, -0.951, -0.951}, false},
+        Case{"yaw acceleration", 2, none, {0, 0.192, 0}, true},
+        Case{"yaw acceleration", 2, none, {0, 0.194, 0.194}, false},
+        Case{"yaw acceleration", 2, none, {0, -0.194, -0.194}, false}}) {
+    CAPTURE(bound);
+    CAPTURE(is_comfortable);
+    CHECK(score_of(driven(speed, accelerations, yaw_rates), 0.0, 3) ==
+          doctest::Approx(is_comfortable ? 1.0 : 14.0 / 16.0));
+  }
+}
+
+TEST_CASE("the closed-loop score counts the way against the direction within any second: up to 2 m, up to 6 m, more") {
+  struct Case {
+    double speed;
+    int steps;  // of an eighth of a second, in the oncoming lane
+    double expected;
+  };
+  for (auto const& [speed, steps, expected] :
+       {Case{10, 0, 1.0}, Case{7.9, 2, 1.0}, Case{8.1, 2, 0.5}, Case{5.9, 12, 0.5}, Case{1.9, 12, 1.0},
+        Case{2.1, 12, 0.5}, Case{6.1, 12, 0.0}}) {
+    CAPTURE(speed);
+    CAPTURE(steps);
+    std::vector<State> states;
+    for (int i = 0; i <= 20; ++i)
+      states.push_back({0.125 * i, 100.0 + 0.125 * i * speed, i > 4 && i <= 4 + steps ? 1.75 : -1.75, 0.0, speed});
+    Sim world(support::two_way_road(300));
+    world.add({.position = {100, -1.75},
+               .heading = 0.0,
+               .speed = speed,
+               .behavior = StaticTrajectory(states),
+               .id = AgentId{2}});
+    CHECK(score_of(world, 0.0, 20, 0.125) == doctest::Approx(expected));
+  }
 }

@@ -182,45 +182,42 @@ TEST_CASE("a truck that enters a tight bend along its lane leaves the road with 
   }
 }
 
-TEST_CASE("on bends of any radius the road is where the map says, for vehicles of any size") {
-  Count count;
-  cb::RandomStream random(8, 0, 0);
-  for (std::uint32_t i = 0; i < 60; ++i) {
-    double const radius = 6.0 * std::pow(30.0, cb::uniform01(random)), side = i % 2 == 0 ? 1.0 : -1.0;
-    auto const some = compare_on_bends({side / radius}, std::min(40.0, 2.5 * radius), i);
-    count.off += some.off;
-    count.on += some.on;
+TEST_CASE("on bends of any radius, alone or to both sides one after the other, the road is where the map says") {
+  for (bool const both : {false, true}) {
+    Count count;
+    cb::RandomStream random(both ? 9 : 8, 0, 0);
+    for (std::uint32_t i = 0; i < 60; ++i) {
+      double const least = both ? 8.0 : 6.0, most = both ? 96.0 : 180.0;
+      double const radius = least * std::pow(most / least, cb::uniform01(random)), side = i % 2 == 0 ? 1.0 : -1.0;
+      std::vector<double> curvatures{side / radius};
+      if (both) curvatures.push_back(-side / radius);
+      auto const some = compare_on_bends(curvatures, both ? between(3, 10, random) : std::min(40.0, 2.5 * radius), i);
+      count.off += some.off;
+      count.on += some.on;
+    }
+    MESSAGE(count.off << " off the road, " << count.on << " on it");
+    CHECK(count.off > 5000);
+    CHECK(count.on > 5000);
   }
-  MESSAGE(count.off << " off the road, " << count.on << " on it");
-  CHECK(count.off > 5000);
-  CHECK(count.on > 5000);
 }
 
-TEST_CASE("a vehicle that crosses from lane to lane stays on the road, one that crosses its border does not") {
-  Sim world(straight_road(2));
-  auto const id = world.add({.position = {100, -1.75}});
-  auto const off_at = [&](double y) {
-    world.set_state(id, {.x = 100, .y = y});
-    return cb::OffRoad{}(world, world.slot_of(id));
+TEST_CASE("a vehicle is off the road across its border, not from lane to lane nor past the end of the map") {
+  struct Case {
+    int lanes;
+    double x, y;
+    bool off;
   };
-  CHECK_FALSE(off_at(-3.5));
-  CHECK_FALSE(off_at(-0.92));
-  CHECK_FALSE(off_at(-6.08));
-  CHECK(off_at(-0.85));
-  CHECK(off_at(-6.15));
-}
-
-TEST_CASE("an agent that drives past the end of the map is not off the road, unless it is beside it") {
-  Sim world(straight_road(1, 100));
-  auto const id = world.add({.position = {50, -1.75}});
-  auto const off_at = [&](double x, double y) {
+  for (auto const& [lanes, x, y, off] :
+       {Case{2, 50, -3.5, false}, Case{2, 50, -0.92, false}, Case{2, 50, -6.08, false}, Case{2, 50, -0.85, true},
+        Case{2, 50, -6.15, true}, Case{1, 98, -1.75, false}, Case{1, 0.3, -1.75, false}, Case{1, 98, -0.5, true},
+        Case{1, 0.3, -3.2, true}}) {
+    CAPTURE(x);
+    CAPTURE(y);
+    Sim world(straight_road(lanes, 100));
+    auto const id = world.add({.position = {50, -1.75}});
     world.set_state(id, {.x = x, .y = y});
-    return cb::OffRoad{}(world, world.slot_of(id));
-  };
-  CHECK_FALSE(off_at(98, -1.75));
-  CHECK_FALSE(off_at(0.3, -1.75));
-  CHECK(off_at(98, -0.5));
-  CHECK(off_at(0.3, -3.2));
+    CHECK(cb::OffRoad{}(world, world.slot_of(id)) == off);
+  }
 }
 
 TEST_CASE("agents that have left traffic are not off the road") {
@@ -231,20 +228,6 @@ TEST_CASE("agents that have left traffic are not off the road") {
   CHECK_FALSE(cb::OffRoad{}(world, world.slot_of(id)));
   world.set_state(id, {.x = 50, .y = 2});  // back in traffic
   CHECK(cb::OffRoad{}(world, world.slot_of(id)));
-}
-
-TEST_CASE("on bends to both sides, one after the other, the road is where the map says") {
-  Count count;
-  cb::RandomStream random(9, 0, 0);
-  for (std::uint32_t i = 0; i < 60; ++i) {
-    double const radius = 8.0 * std::pow(12.0, cb::uniform01(random)), side = i % 2 == 0 ? 1.0 : -1.0;
-    auto const some = compare_on_bends({side / radius, -side / radius}, between(3, 10, random), i);
-    count.off += some.off;
-    count.on += some.on;
-  }
-  MESSAGE(count.off << " off the road, " << count.on << " on it");
-  CHECK(count.off > 5000);
-  CHECK(count.on > 5000);
 }
 
 TEST_CASE("a vehicle between two lanes is on the road up to the end of the map") {

@@ -28,11 +28,12 @@ std::shared_ptr<cambium::Map const> map_of(cambium::map::RoadPlan road);
 /// The map of an OpenDRIVE file of the corpus; null where there is no corpus (see `corpus::find`).
 std::shared_ptr<cambium::Map const> corpus_map(std::string const& name);
 
-/// The message of the `MapError` that `run` throws; "no error" where it throws none.
+/// The message of the error of this kind that `run` throws; "no error" where it throws none.
+template <class Kind = cambium::MapError>
 std::string error_of(auto const& run) {
   try {
     run();
-  } catch (cambium::MapError const& error) {
+  } catch (Kind const& error) {
     return error.what();
   }
   return "no error";

@@ -271,15 +271,10 @@ struct AnyCollision {
     for (std::size_t i = 0; i < circles.size(); ++i) {
       auto const& a = circles[i];
       for (std::size_t j = i + 1; j < circles.size() && circles[j].low <= a.x + a.radius; ++j)
-        if (a.meets(circles[j]) && touch(world, a.slot, circles[j].slot))
+        if (a.meets(circles[j]) && geometry::intersects(box_at(world, a.slot), box_at(world, circles[j].slot)))
           return ordered(world, a.slot, circles[j].slot);
     }
     return std::nullopt;
-  }
-
-  template <class World>
-  [[nodiscard]] static bool touch(World const& world, Slot a, Slot b) {
-    return geometry::intersects(box_at(world, a), box_at(world, b));
   }
 
   template <class World>

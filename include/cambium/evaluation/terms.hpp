@@ -63,6 +63,8 @@ struct Weighted {
   }
 };
 
+/// One weighted term for each evaluator, by which every planner can judge: `terms.term<Gap>() = {.weight = 0.1,
+/// .per_second = true}`.
 template <class... Evaluators>
 struct Terms;
 
@@ -72,11 +74,6 @@ inline constexpr bool is_terms = false;
 template <class... Evaluators>
 inline constexpr bool is_terms<Terms<Evaluators...>> = true;
 }  // namespace detail
-
-/// One weighted term for each evaluator, by which every planner can judge: `terms.term<Gap>() = {.weight = 0.1,
-/// .per_second = true}`.
-template <class... Evaluators>
-struct Terms;
 
 template <>
 struct Terms<> {

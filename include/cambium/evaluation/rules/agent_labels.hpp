@@ -96,56 +96,34 @@ struct AtLaneEnd {
   }
 };
 
-namespace detail {
-
-/// Whether the agent's road has no lane of its direction beside its own there, or one that ends within `distance` [m].
-template <class World>
-[[nodiscard]] bool is_outermost(World const& world, Slot slot, bool leftwards, double distance) {
-  auto const& piece = piece_of(world, slot);
-  if (!is_valid(piece.beside(leftwards))) return true;
-  auto const& beside = road_of(world, slot).corridors[piece.beside(leftwards)].pieces[piece.piece_beside(leftwards)];
-  double const share = (world.frame().agents[slot].lane.s - piece.begin) / (piece.end - piece.begin);
-  double const s = beside.begin + share * (beside.end - beside.begin);
-  return beside.lane_end - s - world.roster().agents[slot].shape.front <= distance;
-}
-
-}  // namespace detail
-
-/// Whether there is no lane to the right of an agent's lane in its direction, or one that ends soon. O(1).
-struct RightmostLane {
+/// Whether there is no lane of its direction beside an agent's lane, or one that ends soon: on its left, or on its
+/// right. O(1).
+template <bool leftwards>
+struct OutermostLane {
   double distance = 100.0;
 
-  static constexpr char const* name = "rightmost_lane";
-  static constexpr char const* summary = "there is no lane to its right, or one that ends soon";
+  static constexpr char const* name = leftwards ? "leftmost_lane" : "rightmost_lane";
+  static constexpr char const* summary = leftwards ? "there is no lane to its left, or one that ends soon"
+                                                   : "there is no lane to its right, or one that ends soon";
   static constexpr char const* source = "BARK";
   static constexpr auto parameters() {
-    return parameter_list(parameter("distance", &RightmostLane::distance, "m", Range{0, 1e5},
+    return parameter_list(parameter("distance", &OutermostLane::distance, "m", Range{0, 1e5},
                                     "a lane that ends within it does not count"));
   }
 
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
-    return detail::is_outermost(world, slot, false, distance);
+    auto const& piece = detail::piece_of(world, slot);
+    auto const corridor = piece.beside(leftwards);
+    if (!is_valid(corridor)) return true;
+    auto const& beside = detail::road_of(world, slot).corridors[corridor].pieces[piece.piece_beside(leftwards)];
+    double const share = (world.frame().agents[slot].lane.s - piece.begin) / (piece.end - piece.begin);
+    double const s = beside.begin + share * (beside.end - beside.begin);
+    return beside.lane_end - s - world.roster().agents[slot].shape.front <= distance;
   }
 };
-
-/// Whether there is no lane to the left of an agent's lane in its direction, or one that ends soon. O(1).
-struct LeftmostLane {
-  double distance = 100.0;
-
-  static constexpr char const* name = "leftmost_lane";
-  static constexpr char const* summary = "there is no lane to its left, or one that ends soon";
-  static constexpr char const* source = "BARK";
-  static constexpr auto parameters() {
-    return parameter_list(parameter("distance", &LeftmostLane::distance, "m", Range{0, 1e5},
-                                    "a lane that ends within it does not count"));
-  }
-
-  template <class World>
-  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
-    return detail::is_outermost(world, slot, true, distance);
-  }
-};
+using LeftmostLane = OutermostLane<true>;
+using RightmostLane = OutermostLane<false>;
 
 /// Whether an agent's reference point has passed a point of the map, measured along its lane corridor: the point's
 /// foot on the centre line is behind it. O(segments of the centre line in between).

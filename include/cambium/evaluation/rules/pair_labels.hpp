@@ -52,96 +52,66 @@ struct RelativeSpeed {
   }
 };
 
-/// Whether the agent drives in the lane next to the other's, on its left. How far ahead or behind does not count. O(1).
-struct LeftOf {
-  static constexpr char const* name = "left_of";
-  static constexpr char const* summary = "drives in the lane to the left of the other's";
+/// Whether the agent drives in the lane next to the other's: on its left, or on its right. How far ahead or behind does
+/// not count. O(1).
+template <bool left>
+struct BesideOf {
+  static constexpr char const* name = left ? "left_of" : "right_of";
+  static constexpr char const* summary =
+      left ? "drives in the lane to the left of the other's" : "drives in the lane to the right of the other's";
   static constexpr char const* source = "BARK";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot, Slot other) const {
     auto const at = relative_place(world, slot, other);
-    return at && at->lanes == -1;
+    return at && at->lanes == (left ? -1 : 1);
   }
 };
+using LeftOf = BesideOf<true>;
+using RightOf = BesideOf<false>;
 
-/// Whether the agent drives in the lane next to the other's, on its right. How far ahead or behind does not count.
-/// O(1).
-struct RightOf {
-  static constexpr char const* name = "right_of";
-  static constexpr char const* summary = "drives in the lane to the right of the other's";
+/// Whether the agent is in front of the other or behind it, along the lanes of its road, in the same or another: the
+/// rear end of the one ahead is not behind the front end of the one that follows. BARK counts vehicles on any road,
+/// also oncoming ones. O(1).
+template <bool front>
+struct AlongOf {
+  static constexpr char const* name = front ? "front_of" : "behind_of";
+  static constexpr char const* summary =
+      front ? "is in front of the other, in any lane of its road" : "is behind the other, in any lane of its road";
   static constexpr char const* source = "BARK";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot, Slot other) const {
     auto const at = relative_place(world, slot, other);
-    return at && at->lanes == 1;
+    auto const &own = world.roster().agents[slot].shape, &its = world.roster().agents[other].shape;
+    return at && (front ? at->way + its.front <= -own.rear : at->way - its.rear >= own.front);
   }
 };
+using FrontOf = AlongOf<true>;
+using BehindOf = AlongOf<false>;
 
-/// Whether the agent is in front of the other: its rear end is not behind the other's front end, along the lanes of its
-/// road, the same or another. BARK counts vehicles on any road, also oncoming ones. O(1).
-struct FrontOf {
-  static constexpr char const* name = "front_of";
-  static constexpr char const* summary = "is in front of the other, in any lane of its road";
-  static constexpr char const* source = "BARK";
-  static constexpr auto parameters() { return parameter_list(); }
-
-  template <class World>
-  [[nodiscard]] bool operator()(World const& world, Slot slot, Slot other) const {
-    auto const at = relative_place(world, slot, other);
-    auto const& agents = world.roster().agents;
-    return at && at->way + agents[other].shape.front <= -agents[slot].shape.rear;
-  }
-};
-
-/// Whether the agent is behind the other: its front end is not ahead of the other's rear end, along the lanes of its
-/// road, the same or another. O(1).
-struct BehindOf {
-  static constexpr char const* name = "behind_of";
-  static constexpr char const* summary = "is behind the other, in any lane of its road";
-  static constexpr char const* source = "BARK";
-  static constexpr auto parameters() { return parameter_list(); }
-
-  template <class World>
-  [[nodiscard]] bool operator()(World const& world, Slot slot, Slot other) const {
-    auto const at = relative_place(world, slot, other);
-    auto const& agents = world.roster().agents;
-    return at && at->way - agents[other].shape.rear >= agents[slot].shape.front;
-  }
-};
-
-/// Whether the other is the next road user ahead of the agent in its lane; those that have yet to merge do not count.
-/// O(1), as `ObservedWorld::ahead`.
-struct PrecedingAgent {
-  static constexpr char const* name = "preceding_agent";
-  static constexpr char const* summary = "the other is the next one ahead in the lane";
+/// Whether the other is the next road user in the agent's lane, ahead or behind; those that have yet to merge do not
+/// count. BARK's SucceedingAgent finds the one ahead. O(1), as `ObservedWorld::ahead`.
+template <bool ahead>
+struct NextInLane {
+  static constexpr char const* name = ahead ? "preceding_agent" : "succeeding_agent";
+  static constexpr char const* summary =
+      ahead ? "the other is the next one ahead in the lane" : "the other is the next one behind in the lane";
   static constexpr char const* source = "BARK";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
   [[nodiscard]] bool operator()(World& world, Slot slot, Slot other) const {
-    auto const next = world.truth(slot).ahead({.merging = Merging::ignored});
+    auto const view = world.truth(slot);
+    Look const look{.merging = Merging::ignored};
+    auto const next = ahead ? view.ahead(look) : view.behind(look);
     return next && next->agent == world.roster().agents[other].id;
   }
 };
-
-/// Whether the other is the next road user behind the agent in its lane. BARK's label of that name finds the one ahead.
-/// O(1), as `ObservedWorld::behind`.
-struct SucceedingAgent {
-  static constexpr char const* name = "succeeding_agent";
-  static constexpr char const* summary = "the other is the next one behind in the lane";
-  static constexpr char const* source = "BARK";
-  static constexpr auto parameters() { return parameter_list(); }
-
-  template <class World>
-  [[nodiscard]] bool operator()(World& world, Slot slot, Slot other) const {
-    auto const next = world.truth(slot).behind({.merging = Merging::ignored});
-    return next && next->agent == world.roster().agents[other].id;
-  }
-};
+using PrecedingAgent = NextInLane<true>;
+using SucceedingAgent = NextInLane<false>;
 
 namespace detail {
 

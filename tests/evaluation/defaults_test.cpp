@@ -1,0 +1,105 @@
+// Defaults and ranges of evaluators, metrics and labels; those of BARK and nuPlan among them.
+#include <cambium/cambium.hpp>
+#include <cambium/evaluation/rules.hpp>
+#include <doctest/doctest.h>
+
+#include <string>
+#include <vector>
+
+#include "../support/parameter_rows.hpp"
+
+using namespace cambium;
+
+TEST_CASE("evaluators, metrics and labels have the documented defaults, units and ranges") {
+  CHECK(support::parameter_rows<Collision, AtFaultCollision, SpeedDeviation, LaneChangeUrgency, HardBraking,
+                                OthersBraking, Gap, Closeness, TimeToCollision, RequiredDeceleration,
+                                Weighted<Progress>, ClosedLoopScore, Constant, SafeDistance, Exceeds<Acceleration>,
+                                DenseTraffic, AtLaneEnd, RightmostLane, LeftmostLane, BeyondPoint, AgentNear,
+                                RelativeSpeed, ZipPartner, SignalAhead, MustGiveWay>() == &R"(
+collision | margin | 0 | m | [0, 100]
+at_fault_collision | standing_speed | 0.05 | m/s | [0, 10]
+at_fault_collision | look_ahead | 0 | s | [0, 60]
+speed_deviation | desired_speed | 15 | m/s | [0, 200]
+lane_change_urgency | horizon | 300 | m | [1, 10000]
+lane_change_urgency | time_horizon | 25 | s | [0, 1000]
+hard_braking | deceleration | 4 | m/s^2 | [0, 50]
+others_braking | comfortable | 1 | m/s^2 | [0, 50]
+others_braking | range | 60 | m | [0, inf)
+gap | farthest | 400 | m | [0, 400]
+closeness | minimum_gap | 2 | m | [0.1, 100]
+closeness | time_headway | 0.6 | s | [0, 20]
+time_to_collision | longest | 60 | s | [0, 1e+06]
+required_deceleration | most | 50 | m/s^2 | [0, 1e+06]
+weighted | weight | 0 | - | (-inf, inf)
+weighted | cost | 0 | - | [0, 1]
+weighted | per_second | false | - | -
+weighted | ends | false | - | -
+closed_loop_score | expected_progress | 0 | m | [0, inf)
+closed_loop_score | least_time_to_collision | 0.95 | s | [0, 60]
+constant | value | true | - | -
+safe_distance | side | ahead | - | ahead, behind
+safe_distance | reaction_time | 1 | s | [0, 10]
+safe_distance | deceleration | 7.84 | m/s^2 | [0.1, 50]
+safe_distance | other_deceleration | 7.84 | m/s^2 | [0.1, 50]
+exceeds | threshold | 0 | - | (-inf, inf)
+dense_traffic | radius | 20 | m | [0, 1e+05]
+dense_traffic | agents | 8 | - | [0, 1e+06]
+at_lane_end | distance | 50 | m | [0, 1e+05]
+rightmost_lane | distance | 100 | m | [0, 1e+05]
+leftmost_lane | distance | 100 | m | [0, 1e+05]
+beyond_point | x | 0 | m | (-inf, inf)
+beyond_point | y | 0 | m | (-inf, inf)
+agent_near | distance | 6 | m | [0, 1e+05]
+relative_speed | difference | 2.7777777777777777 | m/s | (-inf, inf)
+zip_partner | reach | 6 | m | [0, 1000]
+zip_partner | distance | 55 | m | [0, 1e+05]
+signal_ahead | of | light | - | light, red_light, stop_sign
+signal_ahead | distance | 20 | m | [0, 1000]
+must_give_way | time | 2 | s | [0, 60]
+must_give_way | distance | 20 | m | [0, 400]
+must_give_way | braking | 3 | m/s^2 | [0, 20]
+)"[1]);
+  PostEncroachmentTime const encroachment;
+  CHECK(encroachment.longest == 5.0);
+  CHECK(encroachment.crossing_angle == 0.5);
+}
+
+TEST_CASE("the rule sets have these formulas, and these numbers where they differ from the labels' own") {
+  auto const text_of = [](std::vector<TrafficRule<RuleLabels<>>> const& rules) {
+    std::string text;
+    for (auto const& rule : rules) {
+      text += rule.name + ": " + to_string(rule.formula) + '\n';
+      for (auto const& named : rule.labels)
+        named.label.visit([&]<class Label>(Label const& label) {
+          if (!equal_parameters(label, Label{})) text += named.name + " = " + to_string(label) + '\n';
+        });
+    }
+    return text;
+  };
+  CHECK(text_of(highway_rules()) == &R"(
+safe_distance: G safe_ahead
+safe_lane_change: G(lane_change -> safe_behind)
+safe_behind = safe_distance: side=behind, reaction_time=1 s, deceleration=7.84 m/s^2, other_deceleration=7.84 m/s^2
+no_passing_on_the_right: G(!dense & behind -> !X(behind U right U front))
+being_overtaken: G(right & near -> !accelerates)
+near = agent_near: distance=3 m
+accelerates = exceeds: threshold=0.5
+speed_advantage: G(behind & X(!behind & left U front) -> X(faster U front))
+speed_limit: G !speeding
+speeding = exceeds: threshold=0.1
+)"[1]);
+  CHECK(text_of(zip_merge_rules({500, 3})) == &R"(
+zip_merge: G(zip_partner & precedes & !ego_merged & (precedes | merged) U ego_merged -> G(ego_merged & merged -> !precedes))
+ego_merged = beyond_point: x=500 m, y=3 m
+merged = of_other: label.x=500 m, label.y=3 m
+)"[1]);
+  CHECK(text_of(intersection_rules()) == &R"(
+red_light: G(red_ahead -> N light_ahead)
+red_ahead = signal_ahead: of=red_light, distance=20 m
+stop_sign: (stop_ahead -> stop_ahead W (at_line & !moves)) & G(!stop_ahead -> N(stop_ahead -> stop_ahead W (at_line & !moves)))
+stop_ahead = signal_ahead: of=stop_sign, distance=20 m
+at_line = signal_ahead: of=stop_sign, distance=3 m
+moves = exceeds: threshold=0.1
+give_way: G(must_give_way & !in_conflict -> N !in_conflict)
+)"[1]);
+}
