@@ -1,5 +1,7 @@
 #include "cambium/viewer/record_world.hpp"
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 
 #include <doctest/doctest.h>
@@ -31,8 +33,46 @@ TEST_CASE("each lane that leads to a light stops where the junction begins, acro
   CHECK(recorded_stop_lines(*support::own_map("merging.xodr")).empty());
 }
 
+using Sim = World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack>;
+
+TEST_CASE("a recording has objects as rectangles along their longest side, and agents from when they enter") {
+  Sim world(support::straight_road(2, 200));
+  auto const first = world.add({.position = {50, -1.75}, .speed = 5});
+  world.add_object(geometry::Polygon({{100, -3}, {104, -1}, {103, 1}, {99, -1}}));
+  WorldRecorder recorder(world, "an object");
+  auto const late = world.add({.position = {20, -1.75}, .speed = 5});
+  REQUIRE(world.step(0.2));
+  recorder.record(world);
+  recorder.show_as(first, RecordedAgentKind::ego, "me");
+  auto const& [title, lanes, stop_lines, agents, frames, notes] = recorder.recording();
+  CHECK(title == "an object");
+  CHECK(lanes.size() == 2);
+  REQUIRE(agents.size() == 3);
+  CHECK(agents[0].kind == RecordedAgentKind::ego);
+  CHECK(agents[0].label == "me");
+  CHECK(agents[1].id == late);
+  CHECK(agents[1].kind == RecordedAgentKind::other);
+  CHECK(agents[2].kind == RecordedAgentKind::static_object);
+  CHECK(agents[2].label == "object 0");
+  auto const& shape = agents[2].shape;
+  for (double const side : {shape.front, shape.rear}) CHECK(side == doctest::Approx(std::sqrt(5.0)));
+  for (double const side : {shape.left, shape.right}) CHECK(side == doctest::Approx(0.5 * std::sqrt(5.0)));
+  REQUIRE(frames.size() == 2);
+  for (auto const& frame : frames) {
+    REQUIRE(frame.poses.size() == 3);
+    CHECK(frame.poses[0].present);
+    CHECK(frame.poses[1].present == (frame.time > 0.0));
+    CHECK(frame.poses[2].x == 101.5);
+    CHECK(frame.poses[2].y == -1.0);
+    CHECK(frame.poses[2].heading == doctest::Approx(std::atan2(2.0, 4.0)));
+  }
+  auto const& state = world.state(late);
+  auto const& pose = frames[1].poses[1];
+  CHECK(std::array{pose.x, pose.y, pose.heading, pose.speed, pose.acceleration} ==
+        std::array{state.x, state.y, state.heading, state.speed, world.record(late).action.acceleration});
+}
+
 TEST_CASE("a recording has the colours that the world's lights show, and where everybody is") {
-  using Sim = World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack>;
   Sim world(support::own_map("intersection_4way.xodr"));
   auto const from = world.map().find_lane("1", 30.0, -1);
   auto const at = world.map().lane(from).path.pose(20.0);
