@@ -13,18 +13,16 @@
 #include "cambium/benchmark/result_store.hpp"
 #include "program.hpp"
 
+using namespace program;
+
 TEST_CASE(
     "the lane change experiment is a set: a planner that changes lanes succeeds, a driver who keeps his does not") {
-  program::Program const program("benchmark");
-  if (!program.is_there()) return;
+  Program const program("benchmark");
   browser::TemporaryFolder const folder;
-  auto const file = [&](char const* name) { return (folder.path() / name).string(); };
-  auto const run = program.run({"--set", "lane_change", "--behaviors", "idm,frenet", "--scenarios", "40", "--db",
-                                file("lane_change.db"), "--json", file("rows.json")});
-  CHECK(run.code == 0);
-  CHECK(run.err.empty());
+  program.output({"--set", "lane_change", "--behaviors", "idm,frenet", "--scenarios", "40", "--db",
+                  folder.file("lane_change.db"), "--json", folder.file("rows.json")});
   std::set<std::string> sets;
-  for (auto const& row : nlohmann::json::parse(program::content_of(file("rows.json")))) {
+  for (auto const& row : nlohmann::json::parse(content_of(folder.file("rows.json")))) {
     CAPTURE(row.dump());
     sets.insert(std::string(row["set"]));
     CHECK(row["scenarios"] == 40);
@@ -38,19 +36,14 @@ TEST_CASE(
 }
 
 TEST_CASE("the exam has twelve situations in traffic of three temperaments, and other scenarios to train on") {
-  program::Program const program("benchmark");
-  if (!program.is_there()) return;
+  Program const program("benchmark");
   browser::TemporaryFolder const folder;
-  auto const file = [&](std::string const& name) { return (folder.path() / name).string(); };
   using Seeds = std::map<std::string, std::set<std::uint64_t>>;  // by set: a title has one hash for each split
   auto const run = [&](std::string const& split, std::string const& name) {
-    auto const done =
-        program.run({"--set", "planners", "--behaviors", "idm,intersection", "--scenarios", "3", "--split", split,
-                     "--replays", "none", "--db", file(name + ".db"), "--json", file(name + ".json")});
-    CHECK(done.code == 0);
-    CHECK(done.err.empty());
+    program.output({"--set", "planners", "--behaviors", "idm,intersection", "--scenarios", "3", "--split", split,
+                    "--replays", "none", "--db", folder.file(name + ".db"), "--json", folder.file(name + ".json")});
     Seeds seeds;
-    cambium::ResultStore::existing(file(name + ".db")).for_each([&](cambium::ResultRow const& row) {
+    cambium::ResultStore::existing(folder.file(name + ".db")).for_each([&](cambium::ResultRow const& row) {
       seeds[cambium::hash_text(row.key.set_hash)].insert(row.seed);
     });
     return seeds;
@@ -69,7 +62,7 @@ TEST_CASE("the exam has twelve situations in traffic of three temperaments, and 
 
   std::set<std::string> kinds;
   double idm = 0.0, intersection = 0.0;
-  for (auto const& row : nlohmann::json::parse(program::content_of(file("test.json")))) {
+  for (auto const& row : nlohmann::json::parse(content_of(folder.file("test.json")))) {
     CAPTURE(row.dump());
     CHECK(row["scenarios"] == 3);
     CHECK(row["error"] == 0.0);

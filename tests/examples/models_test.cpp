@@ -7,24 +7,20 @@
 #include <map>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include "program.hpp"
 
-namespace {
+using namespace program;
 
-namespace fs = std::filesystem;
-using program::content_of;
-using program::Program;
+namespace {
 
 fs::path const rooms = CAMBIUM_SOURCE_DIR "/include/cambium";
 
 /// The rows that name a model, goal, driver or shape.
 std::set<std::string> rows_of(std::string const& text) {
   std::set<std::string> rows;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);)
+  for (auto const& line : support::split(text, '\n'))
     if (line.starts_with("| `")) rows.insert(line);
   return rows;
 }
@@ -44,10 +40,7 @@ std::string tables(fs::path const& room) {
 
 TEST_CASE("the tables of the models in the rooms' READMEs are the program's output, row by row") {
   Program const program("models");
-  if (!program.is_there()) return;
-  auto const run = program.run({});
-  REQUIRE(run.code == 0);
-  auto const printed = rows_of(run.out);
+  auto const printed = rows_of(program.output({}));
   CHECK(printed.size() > 90);
   std::map<std::string, std::string> homes;  // of the rows
   for (auto const& room : fs::directory_iterator(rooms)) {
@@ -86,7 +79,7 @@ TEST_CASE("every model, goal, driver and shape in the headers is in its room's t
       for (std::sregex_iterator match(header.begin(), header.end(), one.declaration), end; match != end; ++match) {
         auto const name = (*match)[1].str();
         CAPTURE(name);
-        CHECK(text.find("| `" + name) != std::string::npos);
+        CHECK(has(text, "| `" + name));
         ++found;
       }
     }
@@ -97,14 +90,10 @@ TEST_CASE("every model, goal, driver and shape in the headers is in its room's t
 
 TEST_CASE("the program shows one model with all of its parameters, and names those it knows where there is none") {
   Program const program("models");
-  if (!program.is_there()) return;
-  auto const one = program.run({"IdmClassic"});
-  CHECK(one.code == 0);
-  CHECK(one.out.find("| time_headway | 1.5 | s | [0, 20] | time gap kept to the leader |") != std::string::npos);
-  CHECK(program.run({"idm_classic"}).out == one.out);
-  auto const none = program.run({"idm_modern"});
-  CHECK(none.code == 2);
-  CHECK(none.err.find("idm_classic") != std::string::npos);
+  auto const one = program.output({"IdmClassic"});
+  CHECK(has(one, "| time_headway | 1.5 | s | [0, 20] | time gap kept to the leader |"));
+  CHECK(program.output({"idm_classic"}) == one);
+  program.refuses({"idm_modern"}, "idm_classic");
 }
 
 TEST_CASE("a model of one's own takes README 25 lines, with all that uses it") {

@@ -6,14 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "sampled_example.hpp"
+#include "program.hpp"
 
-using program::content_of;
-using program::Program;
+using namespace program;
 
 namespace {
 
-std::string written(std::filesystem::path const& file, std::string const& text) {
+std::string written(fs::path const& file, std::string const& text) {
   std::ofstream(file) << text;
   return file.string();
 }
@@ -36,33 +35,28 @@ TEST_CASE("sampled examples: printed parameters read back as the same results, c
     auto const &name = example.name, &change = example.change;
     CAPTURE(name);
     Program const program(name);
-    if (!program.is_there()) return;
     browser::TemporaryFolder const folder;
     auto const summary = [&](std::string const& out, std::vector<std::string> const& more) {
-      auto const run = program.run(joined({"--scenarios", "60", "--out", (folder.path() / out).string()}, more));
-      CHECK(run.code == 0);
-      CHECK(run.err.empty());
-      return content_of(folder.path() / out / "summary.json");
+      program.output(joined({"--scenarios", "60", "--out", folder.file(out)}, more));
+      return content_of(folder.file(out + "/summary.json"));
     };
-    auto const printed = program.run({"--scenarios", "60", "--print-parameters"});
-    REQUIRE(printed.code == 0);
-    CHECK(printed.out.find("\"format\": 1") != std::string::npos);
+    auto const printed = program.output({"--scenarios", "60", "--print-parameters"});
+    CHECK(has(printed, "\"format\": 1"));
     auto const usual = summary("usual", {});
-    CHECK(sampled_example::value_of(usual, "scenarios") == 60.0);
-    CHECK(summary("same", {"--parameters", written(folder.path() / "same.json", printed.out)}) == usual);
+    CHECK(value_of(usual, "scenarios") == 60.0);
+    CHECK(summary("same", {"--parameters", written(folder.path() / "same.json", printed)}) == usual);
     auto const file = written(folder.path() / "other.json", change);
     CHECK(summary("other", {"--parameters", file}) != usual);
-    CHECK(program.run({"--scenarios", "60", "--print-parameters", "--parameters", file}).out != printed.out);
+    CHECK(program.run({"--scenarios", "60", "--print-parameters", "--parameters", file}).out != printed);
   }
 }
 
 TEST_CASE("a wrong file of parameters is refused with file, key and remedy") {
   Program const program("highway");
-  if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const refusal = [&](std::string const& text) {
     auto const file = written(folder.path() / "p.json", text);
-    auto const run = program.run({"--parameters", file, "--out", (folder.path() / "out").string()});
+    auto const run = program.run({"--parameters", file, "--out", folder.file("out")});
     CHECK(run.code == 2);
     CHECK(run.out.empty());
     CHECK(run.err.find("highway: " + file + ": ") == 0);
@@ -76,9 +70,7 @@ TEST_CASE("a wrong file of parameters is refused with file, key and remedy") {
         0);
   CHECK(refusal(R"({"format": 2})") == "format: is not 1, the one that this version reads; write \"format\": 1\n");
   CHECK(refusal("[1]").find("is a list; give an object") == 0);
-  auto const absent = program.run({"--parameters", "nowhere.json"});
-  CHECK(absent.code == 2);
-  CHECK(absent.err.find("nowhere.json: the file cannot be opened") != std::string::npos);
+  program.refuses({"--parameters", "nowhere.json"}, "nowhere.json: the file cannot be opened");
 }
 
 TEST_CASE("ring, lane_change, replace_agents, soak and benchmark take parameters") {
@@ -116,30 +108,27 @@ TEST_CASE("ring, lane_change, replace_agents, soak and benchmark take parameters
     auto const& words = example.words;
     CAPTURE(name);
     Program const program(name);
-    if (!program.is_there()) return;
     browser::TemporaryFolder const folder;
     bool const has_json = name != "ring";
     auto const figures = [&](std::string const& label, std::vector<std::string> const& more) {
       auto all = joined(words, more);
-      auto const file = folder.path() / (label + ".json");
-      if (has_json) all = joined(all, {"--json", file.string()});
-      if (name == "benchmark") all = joined(all, {"--db", (folder.path() / (label + ".db")).string()});
-      if (name == "ring" || name == "lane_change") all = joined(all, {"--out", (folder.path() / label).string()});
+      auto const file = folder.file(label + ".json");
+      if (has_json) all = joined(all, {"--json", file});
+      if (name == "benchmark") all = joined(all, {"--db", folder.file(label + ".db")});
+      if (name == "ring" || name == "lane_change") all = joined(all, {"--out", folder.file(label)});
       auto const run = program.run(all);
       CAPTURE(run.err);
       CHECK(run.code == 0);
-      return content_of(has_json ? file : folder.path() / label / "summary.json");
+      return content_of(has_json ? file : folder.file(label + "/summary.json"));
     };
     auto const usual = figures("usual", {});
     CHECK(usual.size() > 100);
     CHECK(figures("changed", {"--parameters", written(folder.path() / "right.json", right)}) != usual);
-    auto const printed = program.run({"--print-parameters"});
-    CHECK(printed.code == 0);
-    auto const again = written(folder.path() / "printed.json", printed.out);
-    CHECK(program.run({"--parameters", again, "--print-parameters"}).out == printed.out);
-    auto const refused = program.run({"--parameters", written(folder.path() / "wrong.json", wrong)});
-    CHECK(refused.code == 2);
-    CHECK(refused.err.find("wrong.json") != std::string::npos);
-    CHECK(refused.err.find(message) != std::string::npos);
+    auto const printed = program.output({"--print-parameters"});
+    auto const again = written(folder.path() / "printed.json", printed);
+    CHECK(program.output({"--parameters", again, "--print-parameters"}) == printed);
+    auto const refused = written(folder.path() / "wrong.json", wrong);
+    program.refuses({"--parameters", refused}, refused);
+    program.refuses({"--parameters", refused}, message);
   }
 }

@@ -13,20 +13,15 @@
 
 #include "program.hpp"
 
-using program::content_of;
-using program::Program;
+using namespace program;
 
 TEST_CASE("the lane change example writes a row a cell, the same on any number of threads") {
   Program const program("lane_change");
-  if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const rows = [&](char const* preset, char const* threads) {
     auto const file = folder.path() / (std::string(preset) + threads + ".json");
-    auto const run =
-        program.run({"--preset", preset, "--threads", threads, "--scenarios", "4", "--iterations", "50,100",
-                     "--variation", "0,0.8", "--json", file.string(), "--out", folder.path().string()});
-    CHECK(run.code == 0);
-    CHECK(run.err.empty());
+    program.output({"--preset", preset, "--threads", threads, "--scenarios", "4", "--iterations", "50,100",
+                    "--variation", "0,0.8", "--json", file.string(), "--out", folder.path().string()});
     auto json = nlohmann::json::parse(content_of(file));
     for (auto& row : json) {
       CHECK(row["iterations_per_second"].get<double>() > 0.0);
@@ -35,7 +30,7 @@ TEST_CASE("the lane change example writes a row a cell, the same on any number o
     return json;
   };
   auto const twice = program.run({"--scenarios", "1", "--iterations", "20,30,20", "--variation", "0.5,0.50", "--json",
-                                  (folder.path() / "twice.json").string(), "--out", folder.path().string()});
+                                  folder.file("twice.json"), "--out", folder.path().string()});
   CHECK(twice.code == 0);
   CHECK(nlohmann::json::parse(content_of(folder.path() / "twice.json")).size() == 2);
   for (char const* preset : {"paper", "cambium"}) {
@@ -57,23 +52,21 @@ TEST_CASE("the lane change example writes a row a cell, the same on any number o
     }
     CHECK(one[1]["iterations"] == 100);
     CHECK(one[2]["variation"] == 0.8);
-    CHECK(content_of(folder.path() / (std::string(preset) + ".svg")).find("collision") != std::string::npos);
+    CHECK(has(content_of(folder.path() / (std::string(preset) + ".svg")), "collision"));
   }
 }
 
 TEST_CASE("an interrupted lane change leaves an earlier file as it is, and says where its rows are") {
   Program const program("lane_change");
-  if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const file = folder.path() / "rows.json", part = folder.path() / "rows.json.part";
   std::ofstream(file) << "earlier";
   // The first cell takes moments, the second hours.
-  auto const command =
-      browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "lane_change").string()) +
-      " --scenarios 2 --iterations 10,90000000 --variation 0 --json " + browser::quoted(file.string()) + " --out " +
-      browser::quoted(folder.path().string()) + " >" + browser::quoted((folder.path() / "out").string()) + " 2>" +
-      browser::quoted((folder.path() / "err").string()) + " & while kill -0 $! && ! grep -q iterations_per_second " +
-      browser::quoted(part.string()) + "; do sleep 0.05; done 2>/dev/null; kill -TERM $!; wait $!";
+  auto const command = program.command() + " --scenarios 2 --iterations 10,90000000 --variation 0 --json " +
+                       browser::quoted(file.string()) + " --out " + browser::quoted(folder.path().string()) + " >" +
+                       browser::quoted(folder.file("out")) + " 2>" + browser::quoted(folder.file("err")) +
+                       " & while kill -0 $! && ! grep -q iterations_per_second " + browser::quoted(part.string()) +
+                       "; do sleep 0.05; done 2>/dev/null; kill -TERM $!; wait $!";
   CHECK(WEXITSTATUS(std::system(("bash -c " + browser::quoted(command) + " 2>/dev/null").c_str())) ==
         143);  // by the signal
   CHECK(content_of(file) == "earlier");
@@ -81,44 +74,40 @@ TEST_CASE("an interrupted lane change leaves an earlier file as it is, and says 
   REQUIRE(rows.is_array());
   CHECK(rows.size() == 1);
   auto const err = content_of(folder.path() / "err");
-  CHECK(err.find("what was done is in " + part.string()) != std::string::npos);
-  CHECK(err.find("left") == std::string::npos);  // no progress where nobody looks
+  CHECK(has(err, "what was done is in " + part.string()));
+  CHECK_FALSE(has(err, "left"));  // no progress where nobody looks
 }
 
 TEST_CASE("a lane change that is interrupted before its first row leaves nothing behind") {
   Program const program("lane_change");
-  if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const file = folder.path() / "rows.json", part = folder.path() / "rows.json.part";
-  auto const command = browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "lane_change").string()) +
-                       " --scenarios 2 --iterations 90000000 --json " + browser::quoted(file.string()) + " --out " +
-                       browser::quoted(folder.path().string()) + " >/dev/null 2>&1 & while kill -0 $! && ! test -e " +
-                       browser::quoted(part.string()) + "; do sleep 0.05; done 2>/dev/null; kill -TERM $!; wait $!";
+  auto const command = program.command() + " --scenarios 2 --iterations 90000000 --json " +
+                       browser::quoted(file.string()) + " --out " + browser::quoted(folder.path().string()) +
+                       " >/dev/null 2>&1 & while kill -0 $! && ! test -e " + browser::quoted(part.string()) +
+                       "; do sleep 0.05; done 2>/dev/null; kill -TERM $!; wait $!";
   CHECK(WEXITSTATUS(std::system(("bash -c " + browser::quoted(command) + " 2>/dev/null").c_str())) == 143);
-  CHECK_FALSE(std::filesystem::exists(part));
-  CHECK_FALSE(std::filesystem::exists(file));
+  CHECK_FALSE(fs::exists(part));
+  CHECK_FALSE(fs::exists(file));
 }
 
-TEST_CASE("rows go to a pipe, too") {
+TEST_CASE("rows can be written to a pipe") {
   Program const program("lane_change");
-  if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const out = folder.path() / "piped";
   auto const command =
-      "cd " + browser::quoted(folder.path().string()) + " && " +
-      browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "lane_change").string()) +
+      "cd " + browser::quoted(folder.path().string()) + " && " + program.command() +
       " --scenarios 2 --iterations 10 --variation 0 --json /dev/stderr --out results 2>&1 >/dev/null | cat >" +
       browser::quoted(out.string());
   CHECK(std::system(("bash -o pipefail -c " + browser::quoted(command)).c_str()) == 0);
   auto const rows = nlohmann::json::parse(content_of(out), nullptr, false);
   REQUIRE(rows.is_array());
   CHECK(rows.size() == 1);
-  CHECK_FALSE(std::filesystem::exists(folder.path() / ".part"));
+  CHECK_FALSE(fs::exists(folder.path() / ".part"));
 }
 
 TEST_CASE("the lane change example names the fault in its options") {
   Program const program("lane_change");
-  if (!program.is_there()) return;
   for (auto const& words : {std::vector<std::string>{"--preset", "mine"},
                             {"--iterations", "0"},
                             {"--iterations", "100,x"},
@@ -132,14 +121,12 @@ TEST_CASE("the lane change example names the fault in its options") {
                             {"--scenarios", "-1"},
                             {"--json", "/proc/none/x.json"}}) {
     CAPTURE(words.back());
-    auto const run = program.run(words);
-    CHECK(run.code == 2);
-    CHECK(run.err.find(words[0] == "--json" ? words[1] : words[0]) != std::string::npos);
+    program.refuses(words, words[0] == "--json" ? words[1] : words[0]);
   }
 }
 
 TEST_CASE("a stack's own objects and polylines fill a world in at most 40 lines") {
-  std::ifstream source(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "examples/embed_in_planner.cpp");
+  std::ifstream source(fs::path(CAMBIUM_SOURCE_DIR) / "examples/embed_in_planner.cpp");
   int lines = -1;
   bool inside = false;
   for (std::string line; std::getline(source, line);) {
@@ -149,10 +136,7 @@ TEST_CASE("a stack's own objects and polylines fill a world in at most 40 lines"
   CHECK(lines > 20);
   CHECK(lines <= 40);
   Program const program("embed_in_planner");
-  if (!program.is_there()) return;
-  auto const run = program.run({});
-  CHECK(run.code == 0);
-  CHECK(run.err.empty());
-  CHECK(run.out.find("change_left 0   <- chosen") != std::string::npos);
-  CHECK(run.out.find("agent 12") != std::string::npos);
+  auto const said = program.output({});
+  CHECK(has(said, "change_left 0   <- chosen"));
+  CHECK(has(said, "agent 12"));
 }

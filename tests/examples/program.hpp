@@ -6,23 +6,21 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include "../support/skipped.hpp"
+#include "../support/text.hpp"
 #include "../viewer/browser.hpp"
 
 /// Runs built example programs as a user does.
 namespace program {
 
 namespace fs = std::filesystem;
-
-inline std::string content_of(fs::path const& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
+using support::content_of;
+using support::count;
+using support::has;
+using support::value_of;
 
 struct Run {
   int code = -1;
@@ -41,14 +39,35 @@ class Program {
     return false;
   }
 
+  /// Its path, quoted for a shell.
+  [[nodiscard]] std::string command() const { return browser::quoted(path_.string()); }
+
   [[nodiscard]] Run run(std::vector<std::string> const& words) const {
     browser::TemporaryFolder const folder;
-    auto const out = folder.path() / "out", err = folder.path() / "err";
-    std::string command = browser::quoted(path_.string());
-    for (auto const& word : words) command += ' ' + browser::quoted(word);
-    int const status =
-        std::system((command + " >" + browser::quoted(out.string()) + " 2>" + browser::quoted(err.string())).c_str());
+    auto const out = folder.file("out"), err = folder.file("err");
+    std::string call = command();
+    for (auto const& word : words) call += ' ' + browser::quoted(word);
+    int const status = std::system((call + " >" + browser::quoted(out) + " 2>" + browser::quoted(err)).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(err)};
+  }
+
+  /// What it writes to the standard output; it must succeed and complain of nothing.
+  std::string output(std::vector<std::string> const& words) const {
+    auto const done = run(words);
+    CAPTURE(done.err);
+    CHECK(done.code == 0);
+    CHECK(done.err.empty());
+    return done.out;
+  }
+
+  /// Wrong words get exit code 2 and one line, which has `sentence`.
+  void refuses(std::vector<std::string> const& words, std::string const& sentence) const {
+    auto const done = run(words);
+    CAPTURE(sentence);
+    CAPTURE(done.err);
+    CHECK(done.code == 2);
+    CHECK(has(done.err, sentence));
+    CHECK(done.err.find('\n') + 1 == done.err.size());
   }
 
  private:

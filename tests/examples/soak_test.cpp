@@ -10,8 +10,7 @@
 #include "../support/scale.hpp"
 #include "program.hpp"
 
-using program::content_of;
-using program::Program;
+using namespace program;
 
 namespace {
 
@@ -21,15 +20,16 @@ std::string minutes() { return std::to_string(support::runs(3)); }
 
 TEST_CASE("mixed traffic flows into all maps for some minutes without a collision, the same on any threads") {
   Program const program("soak");
-  if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
-  auto const file = [&](char const* name) { return (folder.path() / name).string(); };
-  auto const one = program.run({"--minutes", minutes(), "--seed", "3", "--threads", "1", "--json", file("one.json")});
+  auto const one =
+      program.run({"--minutes", minutes(), "--seed", "3", "--threads", "1", "--json", folder.file("one.json")});
   REQUIRE(one.code == 0);
-  CHECK(one.out.find("vehicle-km") != std::string::npos);
-  REQUIRE(program.run({"--minutes", minutes(), "--seed", "3", "--threads", "2", "--json", file("two.json")}).code == 0);
-  CHECK(content_of(file("one.json")) == content_of(file("two.json")));
-  auto const json = nlohmann::json::parse(content_of(file("one.json")));
+  CHECK(has(one.out, "vehicle-km"));
+  REQUIRE(
+      program.run({"--minutes", minutes(), "--seed", "3", "--threads", "2", "--json", folder.file("two.json")}).code ==
+      0);
+  CHECK(content_of(folder.file("one.json")) == content_of(folder.file("two.json")));
+  auto const json = nlohmann::json::parse(content_of(folder.file("one.json")));
   CHECK(json["rows"].size() >= 7);
   double kilometres = 0.0;
   for (auto const& row : json["rows"]) {
@@ -46,31 +46,24 @@ TEST_CASE("mixed traffic flows into all maps for some minutes without a collisio
 
 TEST_CASE("the long test repeats one run up to a step, and writes its replay") {
   Program const program("soak");
-  if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const map = CAMBIUM_SOURCE_DIR "/maps/roundabout.xodr";
-  auto const run = program.run(
-      {"--map", map, "--seed", "3", "--replay", "2", "--step", "200", "--out", (folder.path() / "out").string()});
+  auto const run =
+      program.run({"--map", map, "--seed", "3", "--replay", "2", "--step", "200", "--out", folder.file("out")});
   CHECK(run.code == 0);
   CHECK(run.err.empty());
-  CHECK(run.out.find("step 200") != std::string::npos);
-  auto const page = content_of(folder.path() / "out" / "replay.html");
-  CHECK(page.find("</html>") != std::string::npos);
-  CHECK(page.find("run 2") != std::string::npos);
+  CHECK(has(run.out, "step 200"));
+  auto const page = content_of(folder.file("out/replay.html"));
+  CHECK(has(page, "</html>"));
+  CHECK(has(page, "run 2"));
 }
 
 TEST_CASE("the long test names what is wrong with its options") {
   Program const program("soak");
-  if (!program.is_there()) return;
   for (auto const& words : {std::vector<std::string>{"--minutes", "0"},
                             {"--seed", "x"},
                             {"--map", "nowhere.xodr"},
                             {"--replay", "1"},
-                            {"--minute", "1"}}) {
-    auto const run = program.run(words);
-    CAPTURE(words[0]);
-    CHECK(run.code == 2);
-    CHECK(run.err.find(words[0] == "--map" ? words[1] : words[0]) != std::string::npos);
-    CHECK(std::count(run.err.begin(), run.err.end(), '\n') == 1);
-  }
+                            {"--minute", "1"}})
+    program.refuses(words, words[0] == "--map" ? words[1] : words[0]);
 }
