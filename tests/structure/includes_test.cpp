@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "../support/text.hpp"
 
 namespace {
 
@@ -175,10 +176,8 @@ Includes read_includes(std::filesystem::path const& folder) {
   for (auto const& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (entry.path().extension() != ".hpp") continue;
     auto& found = includes[std::filesystem::relative(entry.path(), folder).generic_string()];
-    std::ifstream file(entry.path());
-    for (std::string line; std::getline(file, line);) {
+    for (auto const& line : support::split(support::content_of(entry.path()), '\n'))
       if (auto include = include_of(line); !include.empty()) found.push_back(std::move(include));
-    }
   }
   return includes;
 }
@@ -197,11 +196,8 @@ TEST_CASE("a step dispatches its calls for each agent without std::visit, its ta
     for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(CAMBIUM_SOURCE_DIR) /
                                                                            "include" / "cambium" / room)) {
       if (!entry.is_regular_file()) continue;
-      std::ifstream file(entry.path());
-      for (std::string line; std::getline(file, line);) {
-        CAPTURE(entry.path().string());
-        CHECK(line.find("std::visit(") == std::string::npos);
-      }
+      CAPTURE(entry.path().string());
+      CHECK_FALSE(support::has(support::content_of(entry.path()), "std::visit("));
       ++read;
     }
   CHECK(read > 20);

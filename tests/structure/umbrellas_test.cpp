@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "../support/text.hpp"
 
 namespace {
 
@@ -15,10 +16,8 @@ fs::path const headers = fs::path(CAMBIUM_SOURCE_DIR) / "include" / "cambium";
 
 /// The lines of a header.
 std::set<std::string> lines_of(fs::path const& file) {
-  std::set<std::string> lines;
-  std::ifstream stream(file);
-  for (std::string line; std::getline(stream, line);) lines.insert(line);
-  return lines;
+  auto const lines = support::split(support::content_of(file), '\n');
+  return {lines.begin(), lines.end()};
 }
 
 std::vector<std::string> rooms() {
