@@ -85,7 +85,8 @@ TEST_CASE("a prediction takes delayed observations for the present") {
   CHECK(future.step(0.2));
 }
 
-TEST_CASE("copies, and worlds stepped on other threads, of late, blurred and short-sighted eyes are equal to the bit") {
+TEST_CASE(
+    "with delayed, noisy and limited observers, copies and worlds stepped on other threads are equal bit by bit") {
   auto world = traffic(everything);
   for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto copy = world;
@@ -168,7 +169,7 @@ TEST_CASE("agents of one world perceive by observers of their own kinds") {
                   cb::ParameterError);
 }
 
-TEST_CASE("a chain that changes nothing shows the truth itself, and is no other than a perfect observer") {
+TEST_CASE("a chain that changes nothing shows the truth itself, as a perfect observer does") {
   Observed<cb::ObserverChain<cb::PerfectObserver, cb::PerfectObserver>> world(straight_road(2, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
   world.add({.position = {130, -1.75}, .speed = 8});

@@ -152,7 +152,7 @@ TEST_CASE("each agent of a world has an observer of its own") {
   CHECK(seen_by(world, blurred).at(sharp) != world.state(sharp));
 }
 
-TEST_CASE("traffic of blurred eyes drives on") {
+TEST_CASE("traffic with noisy observers drives on") {
   auto world = traffic(Blurred{});
   for (int i = 0; i < 50; ++i) CHECK(world.step(0.2));
   for (auto const& record : world.frame().agents) CHECK(record.status == cb::AgentStatus::driving);
