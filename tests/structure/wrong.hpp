@@ -25,12 +25,20 @@ struct Idle {
   }
 };
 
-/// A behaviour with the memory `M`; `described` models have a name and parameters.
-template <class M, bool described = true>
+/// A behaviour with the memory `M`, and one without a description.
+template <class M>
 struct Remembers {
   using Memory = M;
   static constexpr char const* name = "remembers";
-  static constexpr auto parameters() requires described { return cambium::parameter_list(); }
+  static constexpr auto parameters() { return cambium::parameter_list(); }
+  template <class View>
+  cambium::Plan<View> plan(View const&, Memory&, double) const {
+    return {};
+  }
+};
+template <class M>
+struct Undescribed {
+  using Memory = M;
   template <class View>
   cambium::Plan<View> plan(View const&, Memory&, double) const {
     return {};

@@ -7,4 +7,4 @@ struct Memory {
   }
   friend bool operator==(Memory const&, Memory const&) = default;
 };
-std::string save(WorldOf<Remembers<Memory, false>> const& world) { return cambium::to_snapshot({}, world); }
+std::string save(WorldOf<Undescribed<Memory>> const& world) { return cambium::to_snapshot({}, world); }
