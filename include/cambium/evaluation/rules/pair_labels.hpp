@@ -75,7 +75,7 @@ using RightOf = BesideOf<false>;
 /// rear end of the one ahead is not behind the front end of the one that follows. BARK counts vehicles on any road,
 /// also oncoming ones. O(1).
 template <bool front>
-struct AlongOf {
+struct ClearOf {
   static constexpr char const* name = front ? "front_of" : "behind_of";
   static constexpr char const* summary =
       front ? "is in front of the other, in any lane of its road" : "is behind the other, in any lane of its road";
@@ -89,8 +89,8 @@ struct AlongOf {
     return at && (front ? at->way + its.front <= -own.rear : at->way - its.rear >= own.front);
   }
 };
-using FrontOf = AlongOf<true>;
-using BehindOf = AlongOf<false>;
+using FrontOf = ClearOf<true>;
+using BehindOf = ClearOf<false>;
 
 /// Whether the other is the next road user in the agent's lane, ahead or behind; those that have yet to merge do not
 /// count. BARK's SucceedingAgent finds the one ahead. O(1), as `ObservedWorld::ahead`.
