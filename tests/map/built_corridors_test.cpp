@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <thread>
+#include <future>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -94,11 +94,11 @@ TEST_CASE("threads that ask for the same roads at once get the same ones") {
   auto const routes = routes_of(*map);
   std::vector<std::vector<Shared>> found(4);
   {
-    std::vector<std::jthread> threads;
+    std::vector<std::future<void>> threads;
     for (auto& mine : found)
-      threads.emplace_back([&mine, &map, &routes] {
+      threads.push_back(std::async(std::launch::async, [&mine, &map, &routes] {
         for (auto const& route : routes) mine.push_back(build_road_corridor(*map, route));
-      });
+      }));
   }
   for (auto const& mine : found) REQUIRE(mine == found[0]);
 }

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <exception>
 #include <functional>
-#include <mutex>
+#include <future>
 #include <system_error>
-#include <thread>
 #include <vector>
 
 namespace cambium {
@@ -16,26 +14,21 @@ namespace cambium {
 /// call starts, and the exception is rethrown. Makes do with fewer threads if the system gives fewer.
 inline void run_on_threads(std::size_t count, std::size_t threads, std::function<void(std::size_t)> const& run) {
   std::atomic<std::size_t> next{0};
-  std::exception_ptr problem;
-  std::mutex mutex;
   auto const work = [&] {
     try {
       for (auto i = next++; i < count; i = next++) run(i);
     } catch (...) {
-      std::lock_guard const lock(mutex);
-      if (!problem) problem = std::current_exception();
       next = count;
+      throw;
     }
   };
-  {
-    std::vector<std::jthread> others;
-    try {
-      while (others.size() + 1 < std::min(threads, count)) others.emplace_back(work);
-    } catch (std::system_error const&) {  // fewer will do
-    }
-    work();
+  std::vector<std::future<void>> others;  // wait when they are destroyed
+  try {
+    while (others.size() + 1 < std::min(threads, count)) others.push_back(std::async(std::launch::async, work));
+  } catch (std::system_error const&) {  // fewer will do
   }
-  if (problem) std::rethrow_exception(problem);
+  work();
+  for (auto& other : others) other.get();
 }
 
 }  // namespace cambium

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <exception>
+#include <future>
 #include <span>
 #include <string>
-#include <thread>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -73,21 +72,11 @@ class ParallelTreeSearch {
   Result const& run(State const& root, std::uint64_t seed) {
     if (searches_.empty()) throw SearchError("ParallelTreeSearch", "has no domain yet", "call `set` before `run`");
     if (searches_.size() == 1) return searches_[0].run(root, seed);
-    std::vector<std::exception_ptr> errors(searches_.size());
-    auto const grow = [&](std::size_t i) {
-      try {
-        searches_[i].run(root, seed, static_cast<std::uint32_t>(i));
-      } catch (...) {
-        errors[i] = std::current_exception();
-      }
-    };
-    {
-      std::vector<std::jthread> crew;  // they join at its end, even if not all could be started
-      for (std::size_t i = 1; i < searches_.size(); ++i) crew.emplace_back(grow, i);
-      grow(0);
-    }
-    for (auto const& error : errors)
-      if (error) std::rethrow_exception(error);
+    auto const grow = [&](std::size_t i) { searches_[i].run(root, seed, static_cast<std::uint32_t>(i)); };
+    std::vector<std::future<void>> crew;  // wait when they are destroyed
+    for (std::size_t i = 1; i < searches_.size(); ++i) crew.push_back(std::async(std::launch::async, grow, i));
+    grow(0);
+    for (auto& other : crew) other.get();
     merge();
     return result_;
   }
