@@ -1,5 +1,9 @@
 #pragma once
 
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "cambium/core/parameters.hpp"
@@ -22,6 +26,18 @@ std::string parameter_rows() {
   };
   (add(Described::name, cambium::describe_parameters<Described>()), ...);
   return rows;
+}
+
+/// Holds the rows to those of the file tests/<room>/parameters.txt.
+template <class... Described>
+void check_parameter_rows(std::string const& room) {
+  auto const rows = parameter_rows<Described...>();
+  auto const file = std::filesystem::path(CAMBIUM_SOURCE_DIR) / "tests" / room / "parameters.txt";
+  if (rows == content_of(file)) return;
+  auto const now = std::filesystem::path(CAMBIUM_BUILD_DIR) / (room + "_parameters.txt");
+  std::ofstream(now, std::ios::binary) << rows;
+  FAIL_CHECK("defaults, units or ranges have changed. If they are meant to be so: cp " << now.string() << " "
+                                                                                       << file.string());
 }
 
 }  // namespace support

@@ -1,0 +1,18 @@
+#include <cambium/cambium.hpp>
+#include <doctest/doctest.h>
+
+#include "../support/parameter_rows.hpp"
+
+namespace cb = cambium;
+
+TEST_CASE("defaults, units and ranges are those of the file beside") {
+  support::check_parameter_rows<
+      cb::IdmClassic, cb::IdmLaneTracking, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::Mobil,
+      cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection, cb::RssConformant<cb::IdmClassic>,
+      cb::HumanDriver<cb::IdmClassic>, cb::Pedestrian, cb::Safety, cb::ConstantAcceleration, cb::StaticTrajectory,
+      cb::ExternalInput, cb::MotionPrimitives, cb::MacroActions, cb::RandomMacroActions,
+      cb::DriverActions<cb::Intersection>, cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal, cb::IdmParameters,
+      cb::RoadRules, cb::LaneChanging, cb::LaneChangeCourse, cb::Yielding<cb::Uniform>, cb::RssParameters,
+      cb::MotionPrimitive, cb::MacroAction, cb::SocialForceParameters, cb::CrossingParameters, cb::FreeSpace,
+      cb::RemainingLength, cb::SpeedLimitAtLeast>("behavior");
+}
