@@ -10,6 +10,7 @@ namespace cambium {
 
 /// The results of one behaviour, with one set of parameters and one version of cambium, on one set of scenarios.
 struct ResultGroup {
+  /// One run.
   struct Row {
     std::int64_t scenario = 0;
     std::uint64_t seed = 0;

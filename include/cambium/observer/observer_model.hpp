@@ -44,8 +44,7 @@ concept LimitedSightOfObjects = requires(O const observer, Scene const scene, Sl
   { observer.sees_object(scene, slot, slot) } -> std::convertible_to<bool>;
 };
 
-/// Whether an observer perceives the agent in slot `other`, or the static object with index `object`; true of one that
-/// hides none.
+/// Whether an observer perceives the agent in slot `other`; true of one that hides none.
 template <class O, class Scene>
 [[nodiscard]] bool sees_agent(O const& observer, Scene const& scene, Slot own, Slot other) {
   if constexpr (LimitedSight<O, Scene>)
@@ -53,6 +52,7 @@ template <class O, class Scene>
   else
     return true;
 }
+/// Whether an observer perceives the static object with index `object`; true of one that hides none.
 template <class O, class Scene>
 [[nodiscard]] bool sees_object(O const& observer, Scene const& scene, Slot own, Slot object) {
   if constexpr (LimitedSightOfObjects<O, Scene>)

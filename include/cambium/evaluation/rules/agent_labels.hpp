@@ -122,7 +122,9 @@ struct OutermostLane {
     return beside.lane_end - s - world.roster().agents[slot].shape.front <= distance;
   }
 };
+/// No lane to the left goes on.
 using LeftmostLane = OutermostLane<true>;
+/// No lane to the right goes on.
 using RightmostLane = OutermostLane<false>;
 
 /// Whether an agent's reference point has passed a point of the map, measured along its lane corridor: the point's

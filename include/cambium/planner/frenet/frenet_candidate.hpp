@@ -79,6 +79,7 @@ enum class FrenetVerdict : std::uint8_t {
   collision
 };
 
+/// What a candidate failed by, in words.
 [[nodiscard]] constexpr char const* to_string(FrenetVerdict verdict) {
   constexpr char const* names[] = {"unchecked",    "valid",     "not finite", "reverses", "too fast",
                                    "acceleration", "curvature", "gap",        "off road", "collision"};
