@@ -335,7 +335,7 @@ CAMBIUM_COLD std::string lines_of(RunResult const& result) {
     using Field = std::remove_cvref_t<decltype(result.*entry.field)>;
     text += std::string("  ") + entry.name + ": ";
     if constexpr (std::is_same_v<Field, std::string>)
-      text += (result.*entry.field).c_str();
+      text += result.*entry.field;
     else
       text += with_unit(value_text(entry, PlainValue::at(&(result.*entry.field), type_info<Field>())), entry.unit);
     text += "\n";

@@ -71,7 +71,7 @@ template <class Owner, class Field>
 /// The result of `parameters()`: a function that calls its argument with each field in turn.
 template <class... Parameters>
 [[nodiscard]] constexpr auto parameter_list(Parameters... parameters) {
-  return [=](auto&& visit) { (visit(parameters), ...); };
+  return [=]([[maybe_unused]] auto&& visit) { (visit(parameters), ...); };
 }
 
 /// Concatenates two parameter lists.

@@ -47,11 +47,11 @@ class WorldRecorder {
   }
 
   /// Sets an agent's colour class and label. No effect if the recording has no such agent.
-  void show_as(AgentId id, RecordedAgentKind kind, std::string label = {}) {
+  void show_as(AgentId id, RecordedAgentKind kind, std::string const& label = {}) {
     for (auto& agent : recording_.agents)
       if (agent.id == id) {
         agent.kind = kind;
-        agent.label = std::move(label);
+        agent.label = label;
       }
   }
 

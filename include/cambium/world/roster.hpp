@@ -63,7 +63,7 @@ struct RosterBase : RosterFacts {
   ObjectId insert(StaticObject object, std::vector<TrafficEntry> const& entries);
 
   /// Removes the object at index `place`. O(objects).
-  void erase_object(Slot place);
+  void erase_object(Slot slot);
 
   /// Appends the goal at `slot` of another roster; `NoGoal` if `other` is null.
   void assume_goal(RosterBase const* other, Slot slot);

@@ -412,7 +412,8 @@ class TrafficIndex {
       std::size_t j = i;
       for (; j > 0 && entry < list[j - 1]; --j) list[j] = list[j - 1];
       list[j] = entry;
-      if ((moves += i - j) > 64 + 8 * list.size()) {
+      moves += i - j;
+      if (moves > 64 + 8 * list.size()) {
         std::sort(list.begin(), list.end());
         return;
       }

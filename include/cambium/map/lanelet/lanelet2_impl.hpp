@@ -184,7 +184,7 @@ class Lanelet2Reader {
     if (!value || !(*value > 0.0)) return std::nullopt;
     if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return *value / 3.6;
     if (unit == "mph") return *value * 0.44704;
-    if (unit == "m/s" || unit == "mps") return *value;
+    if (unit == "m/s" || unit == "mps") return value;
     return std::nullopt;
   }
 

@@ -30,7 +30,7 @@ class LaneTable final : public LaneNames {
   /// The lane of `map` that a number stands for. Throws `ParameterError` at `where` if the map has no such lane.
   [[nodiscard]] LaneId lane_in(Map const& map, LaneId number, std::string const& where) const;
   /// The number that stands for a lane of `map`.
-  [[nodiscard]] LaneId number_of(Map const& map, LaneId lane) const;
+  [[nodiscard]] LaneId number_of(Map const& map, LaneId id) const;
 
  private:
   mutable std::vector<std::string> names_;

@@ -34,13 +34,14 @@ struct MapLegend {
   auto const columns = static_cast<std::size_t>(std::max(1.0, (width - margin) / column));
   std::string text = "<g class=\"legend\">";
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    double const x = margin + column * static_cast<double>(i % columns);
-    double const y = margin + row * static_cast<double>(i / columns);
+    auto const across = i % columns, down = i / columns;
+    double const x = margin + column * static_cast<double>(across);
+    double const y = margin + row * static_cast<double>(down);
     text += "<g transform=\"translate(" + svg_number(x) + ' ' + svg_number(y) + ")\"><g transform=\"scale(8)\">" +
             entries[i].sample + "</g><text x=\"30\" y=\"10\" font-size=\"12\">" + entries[i].text + "</text></g>\n";
   }
-  auto const rows = static_cast<double>((entries.size() + columns - 1) / columns);
-  return {text + "</g>", rows * row + 2.0 * margin};
+  auto const rows = (entries.size() + columns - 1) / columns;
+  return {text + "</g>", static_cast<double>(rows) * row + 2.0 * margin};
 }
 
 }  // namespace cambium::detail

@@ -106,7 +106,7 @@ class RoadLinks {
     bool const at_end = touches(ContactPoint::end), at_start = touches(ContactPoint::start);
     if (at_end != at_start) return {road_end(*incoming, at_end ? ContactPoint::end : ContactPoint::start)};
     auto const& link = link_at(entry.road, entry.end);
-    SectionEnds const named = link && link->id == connection.incoming_road ? follow(link) : SectionEnds{};
+    SectionEnds named = link && link->id == connection.incoming_road ? follow(link) : SectionEnds{};
     if (!at_end) return junction.type == opendrive::JunctionType::virtual_ ? named : SectionEnds{};
     if (named.size() == 1 && is_road_end(named[0])) return named;
     bool const by_end = distance(road_end(*incoming, ContactPoint::end), entry) <=

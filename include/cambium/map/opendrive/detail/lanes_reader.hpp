@@ -93,7 +93,7 @@ inline void append_lane_speed(XmlContext& context, pugi::xml_node node, std::vec
     record.s = *s;
   }
   read_speed(context, node, record);
-  records.push_back(std::move(record));
+  records.push_back(record);
 }
 
 inline void read_lane_links(XmlContext& context, pugi::xml_node node, opendrive::LaneElement& lane) {

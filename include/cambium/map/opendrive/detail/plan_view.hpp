@@ -41,7 +41,7 @@ using cambium::detail::rounded_text;
   report_others(context, node, kind.attributes);
   std::array<double, 8> k{};
   for (std::size_t i = 0; i < k.size() && !kind.attributes[i].empty(); ++i) {
-    auto const value = context.number<double>(node, kind.attributes[i].data());
+    auto const value = context.number<double>(node, kind.attributes[i].data());  // NOLINT: a literal
     if (!value) return false;
     k[i] = *value;
   }

@@ -133,7 +133,7 @@ class CommonRoadLanes : protected CommonRoadValues {
     } else if (name == "adjacentLeft" || name == "adjacentRight") {
       auto const ref = reference(node);
       if (!ref || std::string_view(node.attribute("drivingDir").value()) == "opposite") return;
-      (name == "adjacentLeft" ? lanelet.left_neighbor : lanelet.right_neighbor) = *ref;
+      (name == "adjacentLeft" ? lanelet.left_neighbor : lanelet.right_neighbor) = ref;
     } else if (name == "laneletType") {
       for (auto const& [word, type] : common_road_lane_types)
         if (word == text_of(node)) lanelet.type = type;
