@@ -127,7 +127,8 @@ int run_program(CLI::App& program, int argc, char** argv, Body const& body) {
     return refuse(unknown_words(program.remaining(), long_options(program)));
   } catch (CLI::ArgumentMismatch const& problem) {
     std::string const text = problem.what();
-    bool const is_repeated = text.find("At Most") != text.npos;
+    // The words of CLI11 before 2.7, and since.
+    bool const is_repeated = text.find("At Most") != text.npos || text.find("At most") != text.npos;
     return refuse(text.substr(0, text.find(':')) +
                   (is_repeated ? ": given more than once" : ": not as many values as it takes") +
                   " (--help lists the options)");
