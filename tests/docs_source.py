@@ -69,7 +69,9 @@ def label_of(path):
     return PAGES[path].split()[1] if " " in PAGES[path] else "index"
 
 
-def link(folder, label):
+def link(readme, label):
+    folder = os.path.dirname(readme)
+
     def rewrite(found):
         text, target = found[2], found[3]
         if re.match(r"[a-z]+:", target):
@@ -81,7 +83,7 @@ def link(folder, label):
         if path is None or path in PAGES:
             return f'@ref {label if path is None else label_of(path)}{"-" + anchor if anchor else ""} "{text}"'
         if not os.path.exists(path):
-            sys.exit(f"{os.path.relpath(folder, root)}/README.md: no {target}")
+            sys.exit(f"{os.path.relpath(readme, root)}: there is no {target}")
         path = os.path.relpath(path, os.path.join(root, "build", "docs", "html"))
         return f'<img src="{path}" alt="{text}"/>' if found[1] else f'<a href="{path}">{text}</a>'
 
@@ -89,13 +91,13 @@ def link(folder, label):
 
 
 def page(readme):
-    folder, label = os.path.dirname(readme), label_of(readme)
+    label = label_of(readme)
     with open(readme, encoding="utf-8") as file:
         title, _, body = file.read().partition("\n")
     parts = re.split(r"(^```.*?^```$)", body, flags=re.S | re.M)
     for i in range(0, len(parts), 2):
         parts[i] = re.sub(r"^#(#+) (.*)$", lambda h: f"{h[1]} {h[2]} {{#{label}-{slug(h[2])}}}", parts[i], flags=re.M)
-        parts[i] = re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", link(folder, label), parts[i])
+        parts[i] = re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", link(readme, label), parts[i])
     body = "".join(parts).replace("/*", "/&zwj;*").replace("*/", "*&zwj;/")
     return f"/** {PAGES[readme]} {title.lstrip('# ')}\n{body}\n*/\n"
 
