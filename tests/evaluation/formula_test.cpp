@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "../support/maps.hpp"
+#include "../support/error_of.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/evaluation/rules/formula.hpp"

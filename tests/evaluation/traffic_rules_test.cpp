@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../support/allocations.hpp"
+#include "../support/error_of.hpp"
 #include "../support/maps.hpp"
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"

@@ -8,9 +8,9 @@
 
 #include <doctest/doctest.h>
 
+#include "../support/error_of.hpp"
 #include "../support/map_faults.hpp"
 #include "../support/map_use.hpp"
-#include "../support/maps.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/opendrive/check.hpp"
 

@@ -36,6 +36,7 @@
 #include "cambium/map/corridor/road_area.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "../support/error_of.hpp"
 #include "../support/scale.hpp"
 #include "../support/corpus.hpp"
 #include "corpus_maps.hpp"

@@ -13,6 +13,7 @@
 #include "cambium/map/lanelet/lanelet_map.hpp"
 
 #include "../support/corpus.hpp"
+#include "../support/error_of.hpp"
 #include "../support/maps.hpp"
 
 using cambium::Diagnostic;

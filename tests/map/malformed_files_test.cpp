@@ -9,9 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include "../support/error_of.hpp"
 #include "../support/map_faults.hpp"
 #include "road_text.hpp"
-#include "../support/maps.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reading_limits.hpp"
 

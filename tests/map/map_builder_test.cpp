@@ -14,7 +14,7 @@
 #include "cambium/map/opendrive/check.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 #include "../support/allocations.hpp"
-#include "../support/maps.hpp"
+#include "../support/error_of.hpp"
 #include "lanes_by_hand.hpp"
 
 using namespace by_hand;

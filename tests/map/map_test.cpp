@@ -8,7 +8,7 @@
 
 #include "lanes_by_hand.hpp"
 #include "road_text.hpp"
-#include "../support/maps.hpp"
+#include "../support/error_of.hpp"
 
 namespace {
 

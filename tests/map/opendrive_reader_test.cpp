@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../support/corpus.hpp"
-#include "../support/maps.hpp"
+#include "../support/error_of.hpp"
 #include "road_text.hpp"
 
 namespace {

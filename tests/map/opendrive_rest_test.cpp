@@ -8,7 +8,7 @@
 
 #include "cambium/map/opendrive/reading_limits.hpp"
 #include "cambium/map/opendrive/writer.hpp"
-#include "../support/maps.hpp"
+#include "../support/error_of.hpp"
 #include "road_text.hpp"
 
 namespace {

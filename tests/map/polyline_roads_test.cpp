@@ -12,7 +12,7 @@
 #include "cambium/map/building/center_line_csv.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "lanes_by_hand.hpp"
-#include "../support/maps.hpp"
+#include "../support/error_of.hpp"
 
 using namespace by_hand;
 

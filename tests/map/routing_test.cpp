@@ -14,7 +14,7 @@
 
 #include "corpus_maps.hpp"
 #include "lanes_by_hand.hpp"
-#include "../support/maps.hpp"
+#include "../support/error_of.hpp"
 
 using namespace by_hand;
 

@@ -29,9 +29,9 @@
 #include "cambium/world/world.hpp"
 
 #include "../support/corpus.hpp"
+#include "../support/error_of.hpp"
 #include "../support/maps.hpp"
 #include "../support/xml_damage.hpp"
-#include "message_of.hpp"
 
 using namespace cambium;
 
@@ -156,7 +156,7 @@ TEST_CASE("INTERACTION's rows become tracks by time, in the order of their first
   CHECK(traffic.time_step == doctest::Approx(0.1));
   CHECK(traffic.track(4).states[0].speed == -3.0);  // backwards
   CHECK(traffic.track(4).type == TrackType::truck);
-  CHECK(message_of([&] { return traffic.track(5); }) == "text: track 5: there is no such track; there are 3, 4");
+  CHECK(support::error_of([&] { return traffic.track(5); }) == "text: track 5: there is no such track; there are 3, 4");
 }
 
 TEST_CASE("pedestrians and cyclists have neither size nor heading: both follow from type and motion") {
@@ -207,7 +207,9 @@ TEST_CASE("highD's corners in pictures and NGSIM's feet become middles in metres
 }
 
 TEST_CASE("a malformed table is an error with its line and a remedy") {
-  auto const error = [](std::string const& text) { return message_of([&] { return read_tracks(text, {}, "a.csv"); }); };
+  auto const error = [](std::string const& text) {
+    return support::error_of([&] { return read_tracks(text, {}, "a.csv"); });
+  };
   CHECK(error("") == "a.csv: it has no row; give a table whose first row names the columns");
   CHECK(error("id,x,y\n").find("a.csv:1: there is no column \"track_id\"; name") == 0);
   CHECK(error(replaced(table, "1.5,2,5", "1.5,two,5")).find("a.csv:2: \"two\" is no number") == 0);
@@ -217,7 +219,8 @@ TEST_CASE("a malformed table is an error with its line and a remedy") {
         0);
   CHECK(error(replaced(replaced(table, "4.2", "0"), "4.2", "0")).find("track 3: its length or width is not above 0") !=
         std::string::npos);
-  CHECK(message_of([] { return load_tracks("/nowhere.csv"); }).find("/nowhere.csv: the file cannot be opened") == 0);
+  CHECK(support::error_of([] { return load_tracks("/nowhere.csv"); }).find("/nowhere.csv: the file cannot be opened") ==
+        0);
 }
 
 TEST_CASE("what is odd in a table is a finding") {
@@ -317,12 +320,12 @@ TEST_CASE("uncertain values become their middles, shifted shapes their own, and 
 
 TEST_CASE("a malformed CommonRoad file is an error with file, line and remedy") {
   auto const error = [](std::string const& text) {
-    return message_of([&] { return parse_common_road(text, {}, "a.xml"); });
+    return support::error_of([&] { return parse_common_road(text, {}, "a.xml"); });
   };
   CHECK(error("<osm/>").find("a.xml:1: the root element is <osm>, not <commonRoad>; give") == 0);
   CHECK(error(replaced(common_road(), "timeStepSize='0.2'", "")).find("a.xml:2: timeStepSize is missing") == 0);
   CHECK(error(common_road().substr(0, 900)).find("a.xml:") == 0);
-  CHECK(message_of([] { return load_common_road("/nowhere.xml"); }).find("/nowhere.xml: the file") == 0);
+  CHECK(support::error_of([] { return load_common_road("/nowhere.xml"); }).find("/nowhere.xml: the file") == 0);
 }
 
 TEST_CASE("what is written as CommonRoad reads back the same, bit by bit") {
@@ -367,8 +370,9 @@ TEST_CASE("a run on an OpenDRIVE map is a CommonRoad scenario with its lanes, an
   auto const& s = world.state(AgentId{2});
   CHECK(was.states.back().x == doctest::Approx(s.x + geometry::car().center_offset() * std::cos(s.heading)));
   recorder.traffic().time_step = 0.3;
-  CHECK(message_of([&] { return common_road_text(recorder.traffic()); }).find("is no multiple of the time step") !=
-        std::string::npos);
+  CHECK(support::error_of([&] {
+          return common_road_text(recorder.traffic());
+        }).find("is no multiple of the time step") != std::string::npos);
 }
 
 TEST_CASE("a CommonRoad solution reads back the same, and its steering fits the curve") {
@@ -394,14 +398,15 @@ TEST_CASE("a CommonRoad solution reads back the same, and its steering fits the 
   CHECK(std::stod(text.substr(at)) == doctest::Approx(std::atan(2.578 / radius)).epsilon(1e-3));
   auto bad = solution;
   bad.states[5].time += 0.05;
-  CHECK(message_of([&] { return common_road_solution_text(bad); }).find("state 5 is not one time step after") !=
+  CHECK(support::error_of([&] { return common_road_solution_text(bad); }).find("state 5 is not one time step after") !=
         std::string::npos);
   bad = solution;
   bad.cost_function = "XX";
-  CHECK(message_of([&] { return common_road_solution_text(bad); }).find("cost function XX is unknown") !=
+  CHECK(support::error_of([&] { return common_road_solution_text(bad); }).find("cost function XX is unknown") !=
         std::string::npos);
-  CHECK(message_of([&] { return parse_common_road_solution("<CommonRoadSolution/>", 0.1); }).find("benchmark_id") !=
-        std::string::npos);
+  CHECK(support::error_of([&] {
+          return parse_common_road_solution("<CommonRoadSolution/>", 0.1);
+        }).find("benchmark_id") != std::string::npos);
 }
 
 // --- scenarios -------------------------------------------------------------------------------------------------------
@@ -528,10 +533,11 @@ TEST_CASE("windows cover the recording, and each track has one") {
   auto const egos = ego_windows(traffic);
   REQUIRE(egos.size() == 3);
   CHECK(egos[1] == RecordingWindow{2.0, 10.0, 9});
-  CHECK(message_of([&] { return windows_of(traffic, 0.0, 1.0); }).find("give seconds") != std::string::npos);
-  CHECK(message_of([&] { return recorded_scenario<Sim>(traffic, {.ego = 99}); }).find("track 99, is not there") !=
-        std::string::npos);
-  CHECK(message_of([] { return recorded_scenario<Sim>(RecordedTraffic{}); }).find("there is no map") !=
+  CHECK(support::error_of([&] { return windows_of(traffic, 0.0, 1.0); }).find("give seconds") != std::string::npos);
+  CHECK(support::error_of([&] {
+          return recorded_scenario<Sim>(traffic, {.ego = 99});
+        }).find("track 99, is not there") != std::string::npos);
+  CHECK(support::error_of([] { return recorded_scenario<Sim>(RecordedTraffic{}); }).find("there is no map") !=
         std::string::npos);
 }
 

@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "../support/error_of.hpp"
 #include "../support/maps.hpp"
-#include "message_of.hpp"
 
 using namespace cambium;
 
@@ -28,7 +28,7 @@ std::vector<Scenario<Sim>> drawn(std::string const& map, std::vector<Flow> flows
 }
 
 std::string refusal(std::string const& map, std::vector<Flow> flows) {
-  return message_of([&] { return drawn(map, std::move(flows), 1); });
+  return support::error_of([&] { return drawn(map, std::move(flows), 1); });
 }
 
 LaneId highway_lane(int number) { return support::own_map("highway.xodr")->find_lane("1", 0.0, number); }
@@ -187,7 +187,7 @@ TEST_CASE("the ego is who the rule says, alone with a goal where that is asked f
 
 TEST_CASE("what a flow cannot do is an error that says where and what to do") {
   auto const from = highway_lane(-2);
-  CHECK(refusal("highway.xodr", {Flow{.from = from}}) == "accepted");
+  CHECK(refusal("highway.xodr", {Flow{.from = from}}) == "no error");
   CHECK(refusal("highway.xodr", {Flow{.from = highway_lane(-4)}}) ==
         "recipe.flows[0].from: there is no such lane for vehicles; examples/run map FILE lists the lanes");
   CHECK(refusal("highway.xodr", {Flow{.from = LaneId{77}}}).find("there is no such lane") != std::string::npos);

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "../support/error_of.hpp"
 #include "figure.hpp"
-#include "message_of.hpp"
 
 using namespace cambium;
 
@@ -62,7 +62,7 @@ void check_round_trip(ScenarioSet<World> const& set) {
 using Small = World<BehaviorSet<IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
 
 std::string refusal(std::string const& text) {
-  return message_of([&] { return parse_scenarios<Small>(text, maps, "f.json"); });
+  return support::error_of([&] { return parse_scenarios<Small>(text, maps, "f.json"); });
 }
 
 /// A file with one scenario on merging.xodr; `more` are further members of the scenario.
@@ -133,7 +133,7 @@ TEST_CASE("a recorded trajectory travels with its file") {
 
 TEST_CASE("an error in a scenario file says where it is and what to do") {
   std::string const good = R"({"id": 0, "position": {"x": 20, "y": -5.25}, "heading": 0, "speed": 12})";
-  CHECK(refusal(with_agents(good)) == "accepted");
+  CHECK(refusal(with_agents(good)) == "no error");
   CHECK(
       refusal(with_agents(R"({"position": {"x": 20, "y": -5.25}, "behavior": "imd"})")) ==
       "f.json: scenario_set.scenarios[0].agents[0].behavior: there is no \"imd\" here; There are: idm_classic, mobil");
@@ -151,12 +151,12 @@ TEST_CASE("an error in a scenario file says where it is and what to do") {
   auto const goal = [](std::string const& lane) {
     return with_agents(R"({"position": {"x": 20, "y": -5.25}, "goal": {"reach_lane": {"lane": )" + lane + "}}}");
   };
-  CHECK(refusal(goal("\"3/0/-2\"")) == "accepted");
+  CHECK(refusal(goal("\"3/0/-2\"")) == "no error");
   CHECK(refusal(goal("\"3/0/-9\"")) ==
         "f.json: scenarios[0]: lane \"3/0/-9\": is not in its map; examples/run map FILE lists the lanes");
   CHECK(refusal(goal("\"here\"")).find("write road/section/lane") != std::string::npos);
   CHECK(refusal(goal("7")).find("give a lane's name, in quotes") != std::string::npos);
-  CHECK(refusal(with_agents(good, R"(, "ego": 0)")) == "accepted");
+  CHECK(refusal(with_agents(good, R"(, "ego": 0)")) == "no error");
   for (auto const& text : {with_agents(good, R"(, "ego": 7)"),
                            with_agents(R"({"id": 0, "position": {"x": 20, "y": 500}, "heading": 0, "speed": 9})"),
                            with_agents(good + R"(, {"id": 0, "position": {"x": 60, "y": -5.25}, "speed": 9})")})
@@ -292,7 +292,7 @@ TEST_CASE("a recipe of flows has lights, objects and pedestrians, and what it dr
   CHECK(moved.hash() != set.hash());
 
   auto const says = [&](std::string const& flows, std::string const& rest, std::string const& words) {
-    auto const text = message_of([&] { return parse_scenarios<Walked>(with(flows, rest), maps, "f.json"); });
+    auto const text = support::error_of([&] { return parse_scenarios<Walked>(with(flows, rest), maps, "f.json"); });
     CAPTURE(text);
     CHECK(text.find("f.json: recipes[0]") == 0);
     CHECK(text.find(words) != std::string::npos);

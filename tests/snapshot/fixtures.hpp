@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include "../support/error_of.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/snapshot.hpp"
 #include "support/sealed.hpp"
@@ -18,21 +19,9 @@ namespace fixtures {
 inline constexpr std::array formats{cambium::SnapshotFormat::binary, cambium::SnapshotFormat::text,
                                     cambium::SnapshotFormat::xml};
 
-/// The message of the `SnapshotError` that `run` throws; that of another exception begins with "another: ".
-std::string message_of(auto const& run) {
-  try {
-    run();
-  } catch (cambium::SnapshotError const& error) {
-    return error.what();
-  } catch (std::exception const& error) {
-    return std::string("another: ") + error.what();
-  }
-  return "no error";
-}
-
-/// Checks that `message_of(run)` contains `part`; after a '^', that it begins so.
+/// Checks that the error of `run` contains `part`; after a '^', that it begins so.
 void says(std::string const& part, auto const& run) {
-  auto const message = message_of(run);
+  auto const message = support::error_of<cambium::SnapshotError>(run);
   CAPTURE(part);
   CAPTURE(message);
   CHECK((part.front() == '^' ? message.starts_with(part.substr(1)) : message.find(part) != message.npos));

@@ -1,4 +1,5 @@
 // Snapshot files: what they say, what they refuse, and a user's own components in them.
+#include "../support/error_of.hpp"
 #include "cambium/snapshot.hpp"
 
 #include <doctest/doctest.h>
@@ -596,7 +597,7 @@ TEST_CASE("no mutation of a snapshot gets through to the archive") {
           damaged.erase(at, 1 + random() % 8);
           break;
       }
-      auto const message = message_of([&] { from_snapshot(damaged, "f", other); });
+      auto const message = support::error_of<cambium::SnapshotError>([&] { from_snapshot(damaged, "f", other); });
       bool const by_its_head = message.find("is no snapshot") != message.npos ||
                                message.find("newer than this program") != message.npos ||
                                message.find("it is damaged") != message.npos;
@@ -617,8 +618,9 @@ TEST_CASE("an archive that was changed and sealed again is an error or a world, 
     RandomStream random(static_cast<std::uint64_t>(format), 1, 0);
     for (int i = 0; i < 1500; ++i) {
       Sim other(map);
-      bool const is_refused =
-          message_of([&] { from_snapshot(changed_archive(bytes, begin, random), "f", other); }) != "no error";
+      bool const is_refused = support::error_of<cambium::SnapshotError>([&] {
+                                from_snapshot(changed_archive(bytes, begin, random), "f", other);
+                              }) != "no error";
       refused += is_refused;
       if (!is_refused) static_cast<void>(other.step(0.2));
     }

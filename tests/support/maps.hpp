@@ -3,7 +3,6 @@
 #include <memory>
 #include <string>
 
-#include "cambium/core/error.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/map.hpp"
 
@@ -27,16 +26,5 @@ std::shared_ptr<cambium::Map const> map_of(cambium::map::RoadPlan road);
 
 /// The map of an OpenDRIVE file of the corpus; null where there is no corpus (see `corpus::find`).
 std::shared_ptr<cambium::Map const> corpus_map(std::string const& name);
-
-/// The message of the error of this kind that `run` throws; "no error" where it throws none.
-template <class Kind = cambium::MapError>
-std::string error_of(auto const& run) {
-  try {
-    run();
-  } catch (Kind const& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 }  // namespace support

@@ -1,3 +1,4 @@
+#include "../support/error_of.hpp"
 #include "cambium/world/world.hpp"
 
 #include <doctest/doctest.h>
@@ -23,21 +24,10 @@ namespace {
 
 double const undefined = std::numeric_limits<double>::quiet_NaN();
 
-/// The text of the error that `action` throws; empty if it throws none.
-template <class Action>
-std::string error_of(Action const& action) {
-  try {
-    action();
-  } catch (cb::Error const& e) {
-    return e.what();
-  }
-  return "";
-}
-
 /// Checks that `action` throws an error whose text contains `part`.
 template <class Action>
 void refuses(std::string const& part, Action const& action) {
-  auto const text = error_of(action);
+  auto const text = support::error_of(action);
   CAPTURE(part);
   CAPTURE(text);
   CHECK(!text.empty());
@@ -318,17 +308,17 @@ TEST_CASE("a state that add refuses set_state refuses with the same words, and b
     CAPTURE(state.y);
     CAPTURE(state.heading);
     CAPTURE(state.speed);
-    auto const entering = error_of([&] {
+    auto const entering = support::error_of([&] {
       Sim(world).add({.position = {state.x, state.y}, .heading = state.heading, .speed = state.speed});
     });
-    auto const on_route = error_of([&] {
+    auto const on_route = support::error_of([&] {
       Sim(world).add({.position = {state.x, state.y},
                       .heading = state.heading,
                       .speed = state.speed,
                       .route = cb::map::Route{
                           .lanes = {world.map().find_lane("1", 50.0, -1), world.map().find_lane("1", 50.0, -2)}}});
     });
-    auto const setting = error_of([&] { world.set_state(id, state); });
+    auto const setting = support::error_of([&] { world.set_state(id, state); });
     CHECK_MESSAGE(on_route.empty() == said.empty(), on_route);
     CHECK_MESSAGE(entering.empty() == said.empty(), entering);
     CHECK_MESSAGE(setting.empty() == said.empty(), setting);
