@@ -130,8 +130,6 @@ class TrafficInflow {
                     RandomStream(seed, static_cast<std::uint32_t>(i), 0, purpose)};
   }
 
-  [[nodiscard]] std::vector<TrafficSource> const& sources() const { return sources_; }
-
   /// Number of agents that have arrived at a source and wait for room. At a saturated source at most 1.
   [[nodiscard]] std::uint64_t waiting(std::size_t source) const { return queues_[source].waiting; }
 
