@@ -1,7 +1,7 @@
 #pragma once
 
 #include <algorithm>
-#include <bitset>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -25,7 +25,16 @@ inline constexpr int deepest_struct = 200;
 inline constexpr std::size_t most_fields = 127;
 
 /// A bit for each field of a struct.
-using FieldBits = std::bitset<most_fields + 1>;
+struct FieldBits {
+  std::array<std::uint8_t, most_fields / 8 + 1> bytes;  ///< of eight fields each, the first one's bit the lowest
+
+  [[nodiscard]] static FieldBits all() {
+    FieldBits bits;
+    bits.bytes.fill(0xff);
+    return bits;
+  }
+  [[nodiscard]] bool operator[](std::size_t field) const { return (bytes[field / 8] >> field % 8 & 1) != 0; }
+};
 
 /// Whether a field has the same bits in both structs.
 [[nodiscard]] inline bool are_equal(FieldInfo const& field, void const* a, void const* b) {
@@ -114,15 +123,15 @@ class FieldWriter {
       throw ParameterError(where_, std::string("a struct '") + type.name + "' lies within more than 200 others",
                            "nest fewer of them");
     if (like == nullptr) write_shape(type);  // else the reader knows it from there
-    auto differs = FieldBits().set();
-    if (like != nullptr) {
-      for (std::size_t i = 0; i < fields.size(); ++i) differs[i] = !are_equal(fields[i], object, like);
+    auto differs = FieldBits::all();
+    if (like != nullptr)
       for (std::size_t k = 0; k < fields.size(); k += 8) {
-        std::uint64_t byte = 0;
-        for (std::size_t i = k; i < std::min(k + 8, fields.size()); ++i) byte |= std::uint64_t{differs[i]} << (i - k);
+        unsigned byte = 0;
+        for (std::size_t i = k; i < std::min(k + 8, fields.size()); ++i)
+          byte |= static_cast<unsigned>(!are_equal(fields[i], object, like)) << (i - k);
         put_byte("differs", byte);
+        differs.bytes[k / 8] = static_cast<std::uint8_t>(byte);
       }
-    }
     for (std::size_t i = 0; i < fields.size(); ++i)
       if (differs[i])
         write(fields[i].name, fields[i].type(), fields[i].in(object), like != nullptr ? fields[i].in(like) : nullptr);
@@ -267,6 +276,7 @@ class FieldReader {
 
   [[nodiscard]] KnownTypes::Shape read_shape(TypeInfo const& type) {
     if (auto const* known = known_.shape(type)) return *known;
+    auto const& all = type.fields();
     auto const told = byte("fields");
     std::size_t const fields = told % 128;
     auto const version = told < 128 ? 0u : static_cast<unsigned>(count("version"));
@@ -276,10 +286,10 @@ class FieldReader {
     };
     if (version > type.version)
       refuse("is of a newer version", "read it with the program that wrote it, or a newer one");
-    if (fields > type.fields().size())
+    if (fields > all.size())
       refuse("has more fields than in this program",
              "read it with the program that wrote it, or a newer one; never remove a field from a description");
-    if (version == type.version && names != hash_of_fields(type.fields().first(fields)))
+    if (version == type.version && names != (fields == all.size() ? all.hash : hash_of_fields(all.first(fields))))
       refuse("was saved with other fields, or in another order",
              "append new fields; if one changes its name or meaning, increase the struct's `version`");
     if (version < type.version && type.upgrade == nullptr)
@@ -292,12 +302,12 @@ class FieldReader {
   void read_struct(TypeInfo const& type, void* object, void const* like) {
     if (++depth_ > deepest_struct) damaged();
     auto const shape = read_shape(type);
-    auto differs = FieldBits().set();
+    auto differs = FieldBits::all();
     if (like != nullptr) {
       count_copied(bytes_in(type, like));
       type.assign(object, like);
-      differs.reset();
-      for (std::size_t k = 0; k < shape.fields; k += 8) differs |= FieldBits(byte("differs")) << k;
+      for (std::size_t k = 0; k < shape.fields; k += 8)
+        differs.bytes[k / 8] = static_cast<std::uint8_t>(byte("differs"));
     }
     is_old_ = is_old_ || shape.version < type.version;  // from here on, `upgrade` checks
     auto const& fields = type.fields();
