@@ -27,6 +27,21 @@ struct Search {
   }
 };
 
+struct Named {
+  double speed = 2.5;
+  std::string label = "a";
+
+  static constexpr char const* name = "named";
+  static constexpr auto parameters() {
+    using P = Named;
+    return parameter_list(parameter("speed", &P::speed, "m/s", {}, "desired"),
+                          parameter("label", &P::label, "of the driver"));
+  }
+};
+
+static_assert(OneOf<Search, Named>::place<Search> == 0 && OneOf<Search, Named>::place<Named> == 1 &&
+              OneOf<Search, Named>::place<State> == 2);
+
 template <class T>
 std::string refusal(T object, std::string_view key, double number) {
   auto const before = to_string(object);
@@ -40,6 +55,13 @@ std::string refusal(T object, std::string_view key, double number) {
 }
 
 }  // namespace
+
+TEST_CASE("a line for logs names each field, a number with its unit") {
+  CHECK(to_string(Named{}) == "named: speed=2.5 m/s, label=\"a\"");
+  CHECK(to_string(Search{.parts = {{}}}) ==
+        "search: discount=0.9, depth=3, speed=uniform, speed.uniform.low=1, speed.uniform.high=2, parts[0].low=0, "
+        "parts[0].high=1");
+}
 
 TEST_CASE("a number is set by its key, and nothing else changes") {
   Mobil driver;

@@ -39,7 +39,7 @@ Sim random_world(std::shared_ptr<cb::Map const> const& map, Scene const& scene, 
   Sim::FrameType frame;
   cb::geometry::Pose const area{between(-1e4, 1e4, random), between(-1e4, 1e4, random), scene.heading};
   cb::geometry::Shape const shapes[] = {
-      cb::geometry::car(), cb::geometry::truck(), cb::geometry::pedestrian(), {2.0, 0.2, 1.5, 0.1}};
+      cb::geometry::car(), cb::geometry::truck(), cb::geometry::pedestrian(), {1.0, 0.2, 2.5, 0.1}};
   for (std::uint32_t i = 0; i < scene.agents; ++i) {
     Sim::RosterType::Agent agent{};
     agent.id = static_cast<AgentId>(3 * i + 1);
