@@ -22,11 +22,20 @@ TEST_CASE("a car is 4.5 m by 1.8 m, with 0.9 m behind its rear axle") {
   CHECK(car().radius() == doctest::Approx(0.5 * std::hypot(4.5, 1.8)));
 }
 
-TEST_CASE("all presets are valid, symmetric, and longer than wide") {
-  for (auto const& shape : {car(), van(), truck(), articulated_truck(), bus(), motorcycle(), bicycle(), pedestrian()}) {
+TEST_CASE("the presets are valid, symmetric, and of the size that their comments state") {
+  struct Size {
+    Shape shape;
+    double length, width, rear;
+  };
+  for (auto const& [shape, length, width, rear] :
+       {Size{car(), 4.5, 1.8, 0.9}, Size{van(), 6.0, 2.0, 1.3}, Size{truck(), 10.0, 2.55, 2.8},
+        Size{articulated_truck(), 16.5, 2.55, 4.0}, Size{bus(), 12.0, 2.55, 3.4}, Size{motorcycle(), 2.2, 0.8, 0.35},
+        Size{bicycle(), 1.8, 0.65, 0.35}, Size{pedestrian(), 0.6, 0.6, 0.3}}) {
     CHECK_NOTHROW(check_parameters(shape));
     CHECK(shape.left == shape.right);
-    CHECK(shape.length() >= shape.width());
+    CHECK(shape.length() == doctest::Approx(length));
+    CHECK(shape.width() == doctest::Approx(width));
+    CHECK(shape.rear == rear);
   }
 }
 

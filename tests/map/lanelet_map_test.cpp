@@ -157,7 +157,7 @@ TEST_CASE("what is odd in lanelets is a finding, and the rest is a map") {
   good.successors = {2, 3, 99};
   std::swap(next.left, next.right);
   Lanelet const point{.id = 4, .left = {{0, 0}, {0, 0}}, .right = {{0, 1}, {5, 1}}},
-      wild{.id = 5, .left = {{0, 0}, {std::nan(""), 0}}, .right = {{0, 1}, {5, 1}}};
+      wild{.id = 5, .left = {{0, 1}, {5, 1}}, .right = {{0, 0}, {std::nan(""), 0}}};
   auto const made = build_lanelet_map({good, next, far, point, wild, good}, {}, "five lanelets");
   auto const text = text_of(made.diagnostics);
   CHECK(made.lanes.size() == 3);

@@ -266,3 +266,11 @@ TEST_CASE("an object behind a truck is no neighbour, and in no prediction, until
   world.remove(truck);
   CHECK(world.observe(ego).ahead()->object == hidden);
 }
+
+TEST_CASE("a ray meets the nearest side of a hull, or misses it") {
+  std::vector<Point> const square{{4.5, -0.4}, {5.5, -0.4}, {5.5, 0.6}, {4.5, 0.6}};
+  CHECK(cb::detail::distance_along(square, {0, 0}, {1, 0}) == doctest::Approx(4.5));
+  CHECK(cb::detail::distance_along(square, {5, 0}, {1, 0}) == doctest::Approx(0.5));
+  for (Point const& ray : {Point(-1, 0), Point(0, 1)})
+    CHECK(cb::detail::distance_along(square, {0, 0}, ray) == std::numeric_limits<double>::infinity());
+}

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../support/error_of.hpp"
+#include "../support/maps.hpp"
 #include "figure.hpp"
 
 using namespace cambium;
@@ -303,4 +304,13 @@ TEST_CASE("a recipe of flows has lights, objects and pedestrians, and what it dr
        "has a way beside from or to");
   says(cars, R"(, "lights": [{}, {}, {}])", "light");
   says(cars, R"(, "lights": [{}], "kind": "highway")", "has lights or objects, but no flows");
+}
+
+TEST_CASE("a road's name may hold a slash") {
+  auto const road = support::map_of(
+      {.id = "a/b", .line = map::lay_from({}, {{100.0}}), .sections = {{.right = map::equal_lanes(1)}}});
+  detail::LaneTable const table;
+  auto const number = table.lane("a/b/0/-1", "f.json");
+  CHECK(table.lane_in(*road, number, "f.json") == LaneId{0});
+  CHECK(table.number_of(*road, LaneId{0}) == number);
 }

@@ -117,6 +117,10 @@ TEST_CASE("nobody enters into a queue that has grown back to the source, and the
   CHECK(world.size() >= 3);
   CHECK(world.size() <= 10);
   CHECK(inflow.waiting(0) > 70);
+  Inflow saturated(*road, {{.lane = find_sources(*road).at(0).lane, .per_hour = TrafficSource::saturated}}, 1);
+  saturated.enter(
+      world, [&](TrafficSource const& source, RandomStream& random) { return next_vehicle(*road, source, random); });
+  CHECK(saturated.waiting(0) == 1);
 }
 
 TEST_CASE("nobody enters beside a vehicle that changes into the lane, in a bend as on a straight road") {
