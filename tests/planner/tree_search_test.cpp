@@ -346,6 +346,8 @@ TEST_CASE("parallel trees are merged by visits, with the same result on every ru
   CHECK(first.choice(0).action == first.variation.front());
   CHECK_THROWS_AS(ParallelTreeSearch(search, 0), ParameterError);
   CHECK_THROWS_AS(ParallelTreeSearch(search, 1025), ParameterError);
+  ParallelTreeSearch const two(search, 2);
+  for (auto const& each : two.searches()) CHECK(each.parameters().memory == search.parameters().memory / 2);
   ParallelTreeSearch few(TreeSearch<Crossing>(game, {.horizon = 12}, {}, {}, {2}), 5);
   CHECK(few.run({}, 5).iterations == 2);
 }
