@@ -419,36 +419,42 @@ TEST_CASE("a planner learns which of a user's own hypotheses holds") {
 
 TEST_CASE("an observed speed changes a belief by its normal distribution about what each headway predicts") {
   auto planner = quick(Learning{}, 20);
+  double const interval = BeliefParameters{}.interval;
   planner.belief = {.forgetting = 0.0, .floor = 0.0, .speed_deviation = 0.08};
-  Sim world(support::straight_road(1, 2000.0));
-  world.add({.position = {60, -1.75}, .speed = 12, .behavior = planner});
-  auto const other = world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.time_headway = 1.7}});
-  world.add({.position = {125, -1.75}, .speed = 12, .behavior = IdmClassic{.desired_speed = 12}});
-  std::vector<double> predicted;  // by each region's headway, for the end of the first step
-  for (std::size_t r = 0; r < static_cast<std::size_t>(planner.others.regions); ++r) {
-    Sim trial = world;
-    auto driver = planner.others.driver;
-    driver.time_headway = planner.others.headway(r, 0.5);
-    trial.set_behavior(other, driver);
-    REQUIRE(trial.step(0.2));
-    predicted.push_back(trial.state(other).speed);
+  for (double const late : {0.0, 0.05, -0.05}) {
+    CAPTURE(late);
+    Sim world(support::straight_road(1, 2000.0));
+    world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+    auto const other = world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.time_headway = 1.7}});
+    world.add({.position = {125, -1.75}, .speed = 12, .behavior = IdmClassic{.desired_speed = 12}});
+    std::vector<double> predicted;  // by each region's headway, carried on to when it observes
+    for (std::size_t r = 0; r < static_cast<std::size_t>(planner.others.regions); ++r) {
+      Sim trial = world;
+      auto driver = planner.others.driver;
+      driver.time_headway = planner.others.headway(r, 0.5);
+      trial.set_behavior(other, driver);
+      REQUIRE(trial.step(interval));
+      double const speed = trial.state(other).speed;
+      predicted.push_back(speed + late / interval * (speed - 14.0));
+    }
+    Learning::Workspace workspace;
+    auto memory = planner.think(world.observe(ego), {}, workspace).memory;
+    REQUIRE(world.step(interval + late));
+    memory = planner.think(world.observe(ego), memory, workspace).memory;
+    auto const* belief = memory.belief(other);
+    REQUIRE(belief != nullptr);
+    REQUIRE(belief->size() == predicted.size());
+    std::vector<double> likelihoods;
+    double sum = 0.0;
+    for (double const speed : predicted) {
+      double const off = (world.state(other).speed - speed) / planner.belief.speed_deviation;
+      sum += likelihoods.emplace_back(std::exp(-0.5 * off * off));
+    }
+    for (std::size_t r = 0; r < predicted.size(); ++r)
+      CHECK(belief->probability(r) == doctest::Approx(likelihoods[r] / sum).epsilon(1e-3));
+    CHECK(belief->probability(belief->most_likely()) > 1.5 / static_cast<double>(predicted.size()));
+    CHECK(belief->probability(belief->most_likely()) < 0.98);  // all of them count
   }
-  REQUIRE(world.step(0.2));
-  double const observed = world.state(other).speed;
-  REQUIRE(world.step(0.2));  // here it learns
-  auto const* belief = world.memory<Learning>(ego).belief(other);
-  REQUIRE(belief != nullptr);
-  REQUIRE(belief->size() == predicted.size());
-  std::vector<double> likelihoods;
-  double sum = 0.0;
-  for (double const speed : predicted) {
-    double const off = (observed - speed) / planner.belief.speed_deviation;
-    sum += likelihoods.emplace_back(std::exp(-0.5 * off * off));
-  }
-  for (std::size_t r = 0; r < predicted.size(); ++r)
-    CHECK(belief->probability(r) == doctest::Approx(likelihoods[r] / sum).epsilon(1e-3));
-  CHECK(belief->probability(belief->most_likely()) > 1.5 / static_cast<double>(predicted.size()));
-  CHECK(belief->probability(belief->most_likely()) < 0.98);  // all of them count
 }
 
 TEST_CASE("it learns about agents that do not choose while others choose with it, under a limit on risk") {
