@@ -50,6 +50,7 @@ TEST_CASE("a described struct reads back as the same bits") {
       CHECK(to_json(read, detail) == text);
     }
   CHECK(std::signbit(from_json<Everything>(to_json(unusual())).pair[1]));
+  CHECK(std::signbit(from_json<Window>(to_json(Window{.from = -0.0, .to = 1.0})).from));
 }
 
 TEST_CASE("a file holds what differs from the defaults") {

@@ -1,5 +1,6 @@
 #include <cambium/cambium.hpp>
 #include <cambium/core/read_file.hpp>
+#include <cambium/map/road/curve_layout.hpp>
 #include <cambium/scenario/highway_site.hpp>
 #include <cambium/scenario/junction_site.hpp>
 #include <cambium/scenario/merging_site.hpp>

@@ -348,7 +348,7 @@ template <class World, class ScenarioWorld, class Choose>
 
 }  // namespace detail
 
-/// A contender's behaviour in its world: with a clock around its plans.
+/// What a contender drives with in its world: its behaviour, whose plans are timed.
 template <class Behavior>
 using ContenderBehavior = detail::Timed<Behavior>;
 

@@ -118,7 +118,8 @@ class FieldWriter {
   void write_struct(TypeInfo const& type, void const* object, void const* like) {
     auto const& fields = type.fields();
     if (fields.size() > most_fields)
-      throw ParameterError(where_, std::string("a struct '") + type.name + "' has more than 127 fields", "nest some");
+      throw ParameterError(where_, std::string("a struct '") + type.name + "' has more than 127 fields",
+                           "put some of them into a struct of their own");
     if (++depth_ > deepest_struct)
       throw ParameterError(where_, std::string("a struct '") + type.name + "' lies within more than 200 others",
                            "nest fewer of them");
@@ -168,7 +169,7 @@ class FieldWriter {
     auto const known = like != nullptr ? type.elements(like) : TypeInfo::Elements{};
     if (elements.count > longest_list)
       throw ParameterError(where_, "a list has " + std::to_string(elements.count) + " elements",
-                           "a file holds 16 million");
+                           "split it: a file holds at most 16777216");
     put_whole("length", elements.count);
     for (std::size_t i = 0; i < elements.count; ++i)
       write("item", type.element(), elements[i], i < known.count ? known[i] : i > 0 ? elements[i - 1] : nullptr);
@@ -231,8 +232,9 @@ class FieldReader {
     if (type.is_real() || !(info.range.low < info.range.high)) return;
     auto const value = PlainValue::at(object, type);
     if (!value.in(info.range))
-      throw ParameterError(where_ + ": " + info.name, "is " + value_text(info, value),
-                           "it lies outside of " + range_text(info) + ", the range of its description");
+      throw ParameterError(where_ + ": " + info.name,
+                           "is " + value_text(info, value) + ", which lies outside of " + range_text(info),
+                           "read it with the program that wrote it, or take another copy");
   }
 
   [[nodiscard]] std::uint64_t byte(char const* key) {

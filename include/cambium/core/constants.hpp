@@ -11,7 +11,7 @@ inline constexpr double standing_speed = 0.1;
 /// collisions of nuPlan's metrics (second-hand). It is below `standing_speed`, so that creeping into somebody counts.
 inline constexpr double blameless_speed = 0.05;
 
-/// Distance between the axles of `geometry::car` [m]: that of a vehicle that says nothing else.
+/// Distance between the axles of `geometry::car` [m]: for models of vehicles that name none of their own.
 inline constexpr double car_wheel_base = 2.7;
 
 }  // namespace cambium

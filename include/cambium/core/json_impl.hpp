@@ -55,7 +55,7 @@ class JsonWriter {
       default:
         json = json_of(path, info, PlainValue::at(object, type));
     }
-    return !are_equal(type, object, usual, Equality::of_values);
+    return !are_equal(type, object, usual, Equality::of_bits);  // 0 is not -0
   }
 
   /// The fields of a struct that have to be in the file.

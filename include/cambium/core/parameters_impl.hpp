@@ -77,7 +77,7 @@ CAMBIUM_COLD PlainValue PlainValue::highest(TypeInfo const& type) {
 
 namespace cambium::detail {
 
-/// Adds letters that say how a field is written.
+/// Adds a code for the binary form of a field.
 inline void add_letters(Fnv1a<std::uint32_t>& hash, TypeInfo const& type) {
   using Kind = TypeInfo::Kind;
   auto const add = [&hash](char letter) { hash.add_byte(static_cast<unsigned char>(letter)); };

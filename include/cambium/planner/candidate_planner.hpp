@@ -106,7 +106,7 @@ concept CandidatePlanner = requires(P const planner, View const& view, typename 
   { planner.entry(view, workspace, workspace.candidates[0]) } -> std::same_as<PlannerCandidate>;
 };
 
-/// The `plan` of a planner of candidates: what it does in the next `dt` [s].
+/// The `plan` of a planner of candidates: what it does in the next `dt` [s]. O(candidates compared).
 template <class Planner, class View>
 [[nodiscard]] Plan<View> plan_by_candidates(Planner const& planner, View const& view, typename Planner::Memory& memory,
                                             double dt, typename Planner::Workspace& workspace) {
@@ -125,11 +125,14 @@ template <class Planner, class View>
   return failed;
 }
 
-/// The `think` of a planner of candidates, see `PlannerModel`.
+/// The `think` of a planner of candidates, see `PlannerModel`. O(candidates compared).
 template <class Planner, class View>
 [[nodiscard]] typename Planner::Report think_by_candidates(Planner const& planner, View const& view,
                                                            typename Planner::Memory const& memory,
                                                            typename Planner::Workspace& workspace) {
+  static_assert(CandidatePlanner<Planner, View>,
+                "cambium::think_by_candidates: the planner needs compare, drive, foresee and entry, see "
+                "CandidatePlanner");
   check_parameters(planner);
   auto clock = planner.budget;
   clock.start();

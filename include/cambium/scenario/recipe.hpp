@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -91,7 +92,7 @@ template <class World>
                                                 std::string const& where = "recipe") {
   using Kind = typename ScenarioRecipe<World>::Kind;
   std::vector<Scenario<World>> scenarios;
-  scenarios.reserve(recipe.scenarios);
+  scenarios.reserve(std::min(recipe.scenarios, 1024u));  // the number may come from a file
   auto const each = [&](auto const& sample) {
     for (std::uint32_t i = 0; i < recipe.scenarios; ++i) {
       scenarios.push_back(sample(recipe.first + i));

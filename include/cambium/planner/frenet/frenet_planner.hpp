@@ -170,8 +170,8 @@ struct FrenetPlanner {
     return think_by_candidates(*this, view, memory, workspace);
   }
 
-  /// See `CandidatePlanner`, as for the next ones. It chooses the first valid course, or with `terms` or for a report
-  /// the best of the valid ones.
+  /// See `CandidatePlanner`, also for `drive`, `foresee` and `entry`. It chooses the first valid course, or with
+  /// `terms` or for a report the best of the valid ones.
   template <class View>
   [[nodiscard]] SearchProblem compare(View const& view, Memory const& memory, Workspace& workspace,
                                       Budget& clock) const {

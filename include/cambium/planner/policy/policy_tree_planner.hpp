@@ -113,7 +113,7 @@ struct PolicyTreePlanner {
     return report;
   }
 
-  /// See `CandidatePlanner`, as for the next ones.
+  /// See `CandidatePlanner`, also for `drive`, `foresee` and `entry`.
   template <class View>
   [[nodiscard]] SearchProblem compare(View const& view, Memory const& memory, Workspace& workspace,
                                       Budget& clock) const {

@@ -170,7 +170,7 @@ struct ProposalPlanner {
     return think_by_candidates(*this, view, memory, workspace);
   }
 
-  /// See `CandidatePlanner`, as for the next ones.
+  /// See `CandidatePlanner`, also for `drive`, `foresee` and `entry`.
   template <class View>
   [[nodiscard]] SearchProblem compare(View const& view, Memory const& memory, Workspace& workspace,
                                       Budget& clock) const {

@@ -60,7 +60,7 @@ void check_numbers(EnteringSpec const& spec, std::string const& where);
 /// sequence is too long. Throws `ParameterError` if a number is out of range or limits leave nothing between them.
 [[nodiscard]] Goal entering_goal(Map const& map, Goal const& goal, LaneId lane, std::string const& where);
 
-/// That of `known` which was built through the points of `way` with `options`; null if there is none.
+/// The road of `known` that was built through the points of `way` with `options`; null if there is none.
 [[nodiscard]] FreeRoad const* find_free_road(std::span<FreeRoad const> known, std::vector<geometry::Point> const& way,
                                              map::FreeCorridorOptions const& options);
 
