@@ -21,7 +21,7 @@ inline constexpr std::array formats{cambium::SnapshotFormat::binary, cambium::Sn
 
 /// Checks that the error of `run` contains `part`; after a '^', that it begins so.
 void says(std::string const& part, auto const& run) {
-  auto const message = support::error_of<cambium::SnapshotError>(run);
+  auto const message = support::error_of(run);
   CAPTURE(part);
   CAPTURE(message);
   CHECK((part.front() == '^' ? message.starts_with(part.substr(1)) : message.find(part) != message.npos));

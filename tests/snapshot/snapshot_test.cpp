@@ -321,10 +321,10 @@ TEST_CASE("a world that contradicts itself is refused") {
   says_after("the next id is taken", [](auto& parts) { parts.next_object_id = 1; });
   says_after("its objects are not sorted", [](auto& parts) { parts.objects[1].id = parts.objects[0].id; });
   says_after("an agent drives at another time", [](auto& parts) { parts.frame.agents[Slot{1}].state.time += 1e6; });
-  says_after("^another: snapshot: agent 0: idm_classic.desired_speed",
+  says_after("^snapshot: agent 0: idm_classic.desired_speed",
              [](auto& parts) { parts.agents[0].behavior = IdmClassic{.desired_speed = -1.0}; });
-  says_after("^another: snapshot: agent 1: shape.left", [](auto& parts) { parts.agents[1].shape.left = std::nan(""); });
-  says_after("^another: snapshot: largest_shape: shape.rear", [](auto& parts) { parts.largest_shape.rear = -1.0; });
+  says_after("^snapshot: agent 1: shape.left", [](auto& parts) { parts.agents[1].shape.left = std::nan(""); });
+  says_after("^snapshot: largest_shape: shape.rear", [](auto& parts) { parts.largest_shape.rear = -1.0; });
   says_after("there is no such id", [](auto& parts) { parts.agents.back().id = none<AgentId>; });
   says_after("an object has no id", [](auto& parts) { parts.objects.back().id = none<ObjectId>; });
   says_after("its outline has no corners", [](auto& parts) { parts.objects[0].outline = geometry::Polygon(); });
@@ -372,7 +372,7 @@ TEST_CASE("a controller that would act without end, an observer and a past that 
     change(parts);
     says(sentence, [&] { static_cast<void>(detail::restored<Driven>(map, std::move(parts))); });
   };
-  says_after("^another: snapshot: agent 0: stanley.actuation.period",
+  says_after("^snapshot: agent 0: stanley.actuation.period",
              [](auto& parts) { parts.agents[0].execution.actuation.period = 1e-30; });
   says_after("others.along", [](auto& parts) { parts.agents[0].observer.template stage<0>().others.along = -1.0; });
   says_after("not finite", [](auto& parts) { parts.frame.agents[Slot{0}].past.states[1].x = std::nan(""); });
