@@ -1,5 +1,4 @@
 // Snapshot files: what they say, what they refuse, and a user's own components in them.
-#include "../support/error_of.hpp"
 #include "cambium/snapshot.hpp"
 
 #include <doctest/doctest.h>
@@ -14,6 +13,8 @@
 
 #include <boost/container/static_vector.hpp>
 #include <boost/serialization/vector.hpp>
+
+#include "../support/error_of.hpp"
 
 #include "cambium/cambium.hpp"
 #include "cambium/map/content_hash.hpp"

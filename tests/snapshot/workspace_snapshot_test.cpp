@@ -1,5 +1,4 @@
 // Trees that a planner has kept go through a snapshot: the next search is that of a twin which never was saved.
-#include "../support/error_of.hpp"
 #include "cambium/snapshot.hpp"
 
 #include <doctest/doctest.h>
@@ -12,6 +11,8 @@
 #include <string>
 #include <utility>
 #include <variant>
+
+#include "../support/error_of.hpp"
 
 #include "cambium/cambium.hpp"
 #include "cambium/planner.hpp"

@@ -1,4 +1,3 @@
-#include "../support/error_of.hpp"
 #include "cambium/world/world.hpp"
 
 #include <doctest/doctest.h>
@@ -10,6 +9,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "../support/error_of.hpp"
 
 #include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/core/distributions.hpp"
@@ -30,7 +31,7 @@ void refuses(std::string const& part, Action const& action) {
   auto const text = support::error_of(action);
   CAPTURE(part);
   CAPTURE(text);
-  CHECK(!text.empty());
+  CHECK(text != "no error");
   CHECK(text.find(part) != std::string::npos);
 }
 

@@ -100,8 +100,8 @@ void write_fields(FieldSink& sink, char const* key, TypeInfo const& type, void c
 
 /// Reads what `write_fields` has written, and brings structs of older versions up to date. Throws `ParameterError`
 /// where the content contradicts itself, is newer than the structs, or has a whole number out of its range. Real
-/// numbers keep their bits, whatever they are: a planner that went wrong may remember NaN. Allocates at most 64 MiB and
-/// 256 bytes for each byte read. `where`: the source, for messages.
+/// numbers keep their bits, whatever they are: a planner that went wrong may remember NaN. Allocates at most 64 MiB
+/// plus 256 bytes for each byte read. `where`: the source, for messages.
 void read_fields(FieldSource& source, char const* key, TypeInfo const& type, void* object, std::string const& where);
 
 /// The bytes of a file with this content.
