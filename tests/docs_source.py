@@ -1,5 +1,7 @@
 """docs_source.py FOLDER: writes into FOLDER what Doxygen reads of cambium, for tests/docs: the headers, each as a part of its
-room, with the sentence of its parameter at each field; and a page a room, of its README."""
+room, with the sentence of its parameter at each field; and a page a room, of its README.
+
+docs_source.py --check FILE: of Doxygen's warnings in FILE, those that somebody has to mend."""
 
 import os
 import re
@@ -108,6 +110,33 @@ def write(path, text):
         file.write(text)
 
 
+# What a concept, a base class or the template of a specialisation asks for is described there.
+DESCRIBED = re.compile(
+    r"Member (operator|(parameters|check|plan|observe|sees|sees_object|steps_back|update|select|roll_out|execute|derivative|limited|"
+    r"input|at_goal|drive|foresee|entry|assume|fell_short)\()|of class cambium::(HumanView|map::MapQueries|TrafficDomain|HypothesisDomain) |"
+    r"(Member|Compound|struct) [^ ]*<.*>|Compound .*::(Memory|Workspace|State|Input|Statistics) |Member \w+\(\w+ &&\)"
+)
+ACCESSOR = re.compile(r"Member \w+\(\)(?: const)?(?: noexcept)? \(function\)")
+FIELD_OR_TYPE = re.compile(r"Member [^(]* \((variable|typedef|enumeration)\) of (struct|class) |\(friend\) of ")
+
+
+def to_mend(warnings):
+    """All but undocumented members whose names say it (fields, accessors), that are described elsewhere, or that follow in one
+    paragraph what is described."""
+    for warning in warnings:
+        found = re.match(r"(.*?):(\d+): warning: (Member|Compound) .* is not documented", warning)
+        if found and (DESCRIBED.search(warning) or ACCESSOR.search(warning) or FIELD_OR_TYPE.search(warning)):
+            continue
+        if found:
+            with open(found[1], encoding="utf-8") as file:
+                above = file.read().split("\n")[: int(found[2]) - 1]
+            while above and above[-1].strip() and not above[-1].strip().startswith("///") and not above[-1].endswith(":"):
+                above.pop()
+            if above and above[-1].strip().startswith("///"):
+                continue
+        yield warning
+
+
 def main(out):
     for readme in PAGES:
         write(os.path.join(out, f"{label_of(readme)}.dox"), page(readme))
@@ -124,4 +153,8 @@ def main(out):
         write(os.path.join(out, "cambium", path), header(text, path.split(os.sep)[0].removesuffix(".hpp"), said))
 
 
-main(sys.argv[1])
+if sys.argv[1] == "--check":
+    with open(sys.argv[2], encoding="utf-8") as listed:
+        sys.stdout.writelines(to_mend(listed))
+else:
+    main(sys.argv[1])

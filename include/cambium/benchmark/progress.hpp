@@ -30,6 +30,7 @@ namespace cambium {
 /// A line on a terminal's error stream that shows how far the work is; silent elsewhere. One thread at a time calls it.
 class ProgressBar {
  public:
+  /// `what` stands at the head of the line.
   explicit ProgressBar(std::string what) : what_(std::move(what)) {
 #if defined(__unix__) || defined(__APPLE__)
     is_terminal_ = isatty(STDERR_FILENO) == 1;

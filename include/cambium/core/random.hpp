@@ -37,6 +37,7 @@ class RandomStream {
  public:
   using result_type = std::uint64_t;
 
+  /// The stream of this key, at its first draw.
   constexpr RandomStream(std::uint64_t seed, std::uint32_t agent, std::uint32_t step, std::uint32_t purpose = 0)
       : counter_{0, purpose, step, agent},
         key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)} {}

@@ -22,14 +22,18 @@ struct Box {
   }
 
   [[nodiscard]] Point center() const { return {0.5 * (min_x + max_x), 0.5 * (min_y + max_y)}; }
+  /// Larger by `by` [m] on each side; smaller where it is negative.
   [[nodiscard]] Box grown(double by) const { return {min_x - by, min_y - by, max_x + by, max_y + by}; }
 
+  /// Whether `p` lies inside or on the border.
   [[nodiscard]] bool contains(Point const& p) const {
     return p.x() >= min_x && p.x() <= max_x && p.y() >= min_y && p.y() <= max_y;
   }
+  /// Whether all of `other` does.
   [[nodiscard]] bool contains(Box const& other) const {
     return other.min_x >= min_x && other.max_x <= max_x && other.min_y >= min_y && other.max_y <= max_y;
   }
+  /// Whether the two share a point.
   [[nodiscard]] bool intersects(Box const& other) const {
     return min_x <= other.max_x && other.min_x <= max_x && min_y <= other.max_y && other.min_y <= max_y;
   }

@@ -20,6 +20,7 @@ concept ForeignVector = requires(V const& v) {
 class Point {
  public:
   constexpr Point() = default;
+  /// Of its coordinates, or of what converts to it.
   constexpr Point(double x, double y) : x_(x), y_(y) {}
   template <ForeignVector V>
   constexpr Point(V const& v) : x_(v.x()), y_(v.y()) {}
@@ -39,6 +40,7 @@ class Point {
   [[nodiscard]] constexpr double& x() { return x_; }
   [[nodiscard]] constexpr double& y() { return y_; }
 
+  /// As `Eigen::Vector2d` has them; a vector of length 0 stays so when normalised.
   [[nodiscard]] constexpr double dot(Point const& b) const { return x_ * b.x_ + y_ * b.y_; }
   [[nodiscard]] constexpr double squaredNorm() const { return dot(*this); }
   [[nodiscard]] double norm() const { return std::sqrt(squaredNorm()); }

@@ -114,11 +114,13 @@ class Map {
     CAMBIUM_ASSERT(index_of(id) < parts_.roads.size(), "Map::road: the map has no road of that id");
     return parts_.roads[index_of(id)];
   }
+  /// As `road`.
   [[nodiscard]] Lane const& lane(LaneId id) const {
     CAMBIUM_ASSERT(index_of(id) < parts_.lanes.size(), "Map::lane: the map has no lane of that id");
     return parts_.lanes[index_of(id)];
   }
 
+  /// As `road`.
   [[nodiscard]] Junction const& junction(JunctionId id) const {
     CAMBIUM_ASSERT(index_of(id) < parts_.junctions.size(), "Map::junction: the map has no junction of that id");
     return parts_.junctions[index_of(id)];

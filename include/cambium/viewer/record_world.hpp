@@ -30,6 +30,7 @@ struct StaticObject;
 /// adds a frame, and the agents that have entered since. Objects that enter later are not recorded.
 class WorldRecorder {
  public:
+  /// Begins with the map and the agents of `world` as it is.
   template <class World>
   explicit WorldRecorder(World const& world, std::string title = {}) {
     recording_.title = std::move(title);

@@ -38,6 +38,7 @@ class ObservedWorld {
   using State = typename World::State;
   using Dynamics = typename World::Dynamics;
 
+  /// What the agent of `slot` sees. Refers to `world`, which has to live as long. O(1).
   ObservedWorld(World const& world, Slot slot)
       : world_(&world),
         own_(&world.roster().agents[index_of(slot)]),

@@ -37,6 +37,7 @@ struct ReachingEntries {
     off_lanes.clear();
   }
 
+  /// Adds an agent that reaches into `lane`, and notes whether it leaves room beside itself.
   void add(TrafficEntry const& entry, LaneStretch const& lane) {
     entries.push_back(entry);
     over_begin = std::max(over_begin, lane.begin - (entry.position - entry.rear));

@@ -45,6 +45,7 @@ struct SightedQuery : TrafficQuery {
   SeesObject sees_object;
   double far = Look::horizon;  ///< an entry farther away ends the search, visible or not [m]
 
+  /// Whether the search goes on behind this entry, `way` [m] ahead: ego cannot see it.
   [[nodiscard]] bool skips(TrafficEntry const& entry, bool is_object, double way) const {
     if (is_object) return way <= far && !sees_object(entry.slot);
     return entry.slot == slot || (way <= far && !sees(entry, way));

@@ -69,6 +69,7 @@ struct MacroActions {
     std::uint8_t chosen = 0;  ///< number of the action
     bool is_new = true;       ///< it has not begun yet
 
+    /// Begins action `number`, or `nothing`.
     void choose(std::size_t number) {
       chosen = static_cast<std::uint8_t>(number <= nothing ? number : nothing - 1);
       is_new = true;

@@ -43,8 +43,10 @@ concept HasDriverParameters = requires(P const p) {
 template <CarFollowingLaw Law>
 class Strictest {
  public:
+  /// Refers to `law`, which has to live as long.
   explicit Strictest(Law const& law) : law_(&law) {}
 
+  /// Keeps `other` if it is stricter.
   void heed(Constraint const& other) {
     if (constraint_.gap < free_road) {  // a single constraint needs no comparison
       double const a = (*law_)(other);

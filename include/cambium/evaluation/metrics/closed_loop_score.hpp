@@ -26,6 +26,7 @@ struct ClosedLoopScore {
   double least_time_to_collision = 0.95;
 
   ClosedLoopScore() = default;
+  /// `progress` [m] takes the place of a human driver's.
   explicit ClosedLoopScore(double progress) : expected_progress(progress) {}
 
   static constexpr char const* name = "closed_loop_score";

@@ -20,6 +20,7 @@ struct Displacement {
   StaticTrajectory recorded{};
 
   Displacement() = default;
+  /// Compares with `recording`.
   explicit Displacement(StaticTrajectory recording) : recorded(std::move(recording)) {}
 
   template <class World>

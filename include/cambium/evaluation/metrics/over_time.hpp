@@ -36,6 +36,7 @@ struct Over {
   E evaluator{};
 
   Over() = default;
+  /// Summarises `own`.
   explicit Over(E own) : evaluator(std::move(own)) {}
 
   template <class World>

@@ -13,6 +13,7 @@ namespace cambium {
 template <class M>
 class PerAgent {
  public:
+  /// One metric for each agent that it meets, each a copy of `metric`; or for `agents` only.
   explicit PerAgent(M metric = {}) : start_(std::move(metric)), takes_all_(true) {}
   PerAgent(std::span<AgentId const> agents, M const& metric) {
     for (auto const id : agents) add(id, metric);

@@ -17,6 +17,7 @@ struct RssCompliance {
   RssParameters rss{};
 
   RssCompliance() = default;
+  /// Judges by these assumptions on how vehicles brake and respond.
   explicit RssCompliance(RssParameters const& assumptions) : rss(assumptions) {}
 
   template <class World>

@@ -28,6 +28,7 @@ struct NamedLabel {
   std::string name{};
   Labels label;
 
+  /// A label under its own name, or under another.
   template <class L>
   requires(Labels::template contains<L>) NamedLabel(L const& one) : name(L::name), label(one) {}
   NamedLabel(std::string own_name, Labels const& one) : name(std::move(own_name)), label(one) {}

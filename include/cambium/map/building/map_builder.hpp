@@ -36,6 +36,7 @@ struct TurnPlan {
 /// call that throws changes nothing.
 class MapBuilder {
  public:
+  /// An empty map of this name.
   explicit MapBuilder(std::string name = "map");
 
   /// Adds a road and returns its id. Throws `MapError` where the id is taken or says none, the line or the first

@@ -49,6 +49,7 @@ struct Feeder {
   [[nodiscard]] bool is_still_to_merge() const { return end <= free_until; }
   /// Whether the right of way decides about a vehicle whose front end is at corridor position `front` [m].
   [[nodiscard]] bool is_up_to_rule(double front) const { return by_rule && front < free_until; }
+  /// Corridor position of the lane coordinate `index`, and the reverse [m].
   [[nodiscard]] double image(double index) const {
     return begin + (index - index_begin) * (end - begin) / (index_end - index_begin);
   }

@@ -34,6 +34,7 @@ struct PathStretch {
   [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
   /// How far the two are apart; negative where they overlap.
   [[nodiscard]] double gap(PathStretch const& o) const { return std::max(begin, o.begin) - std::min(end, o.end); }
+  /// Whether it includes all of the other.
   [[nodiscard]] bool has(PathStretch const& o) const { return begin <= o.begin && o.end <= end; }
   /// Grows to include the other.
   void add(PathStretch const& o) { *this = {std::min(begin, o.begin), std::max(end, o.end)}; }

@@ -12,6 +12,7 @@ struct FileLine {
   int value = 0;
 
   constexpr FileLine() = default;
+  /// Converts from and to the number.
   constexpr FileLine(int line) : value(line) {}
   constexpr operator int() const { return value; }
 

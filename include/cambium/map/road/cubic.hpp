@@ -18,6 +18,7 @@ struct CubicRecord {
   double c{};
   double d{};
 
+  /// Value and derivatives by `station` [m].
   [[nodiscard]] double value(double station) const {
     double const u = station - s;
     return a + u * (b + u * (c + u * d));
@@ -66,6 +67,7 @@ class CubicProfile {
     cambium::detail::stable_sort(records_, &CubicRecord::s);
   }
 
+  /// Before the first record 0, or the value at its start with `BeforeFirst::hold`.
   [[nodiscard]] double value(double s) const {
     CubicRecord const* record = find(s);
     if (record) return record->value(s);

@@ -17,6 +17,7 @@ template <class Scalar>
 struct Quintic {
   std::array<Scalar, 6> c{};  ///< c[0] + c[1] t + ... + c[5] t^5
 
+  /// Position, velocity and acceleration at `t` [s].
   [[nodiscard]] PointMotion<Scalar> at(Scalar t) const {
     return {c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5])))),
             c[1] + t * (Scalar(2) * c[2] + t * (Scalar(3) * c[3] + t * (Scalar(4) * c[4] + t * Scalar(5) * c[5]))),

@@ -55,6 +55,7 @@ class Belief {
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// Of `hypothesis`, a number below `size()`.
   [[nodiscard]] double probability(std::size_t hypothesis) const { return static_cast<double>(weights_[hypothesis]); }
   [[nodiscard]] std::size_t most_likely() const {
     return static_cast<std::size_t>(std::max_element(weights_.begin(), weights_.begin() + size_) - weights_.begin());

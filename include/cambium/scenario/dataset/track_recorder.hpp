@@ -25,6 +25,7 @@ namespace cambium {
 /// `RecordedTraffic::time_step` is what the caller steps by.
 class TrackRecorder {
  public:
+  /// Begins with the agents of `world` as it is; `time_step` [s] is that of its steps.
   template <class World>
   explicit TrackRecorder(World const& world, double time_step, std::string name = "run") {
     traffic_.name = std::move(name);
