@@ -157,7 +157,7 @@ class Inspector {
         report(Flaw::jump, text);
       }
       bool const had_stood = last.stands > longest_stand;
-      last.stands = state.speed < 0.1 ? last.stands + dt : 0.0;
+      last.stands = state.speed < cb::standing_speed ? last.stands + dt : 0.0;
       if (!walks && !had_stood && last.stands > longest_stand) report(Flaw::stand);
     }
     last = {state.x, state.y, state.heading, state.speed, last.stands, false};

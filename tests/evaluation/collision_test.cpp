@@ -243,7 +243,7 @@ TEST_CASE("with a look-ahead, a driver is at fault for the collisions that const
   CHECK_FALSE(soon.among(world, rear, others));
   cb::Slot const all[] = {beside, front};
   CHECK(soon.among(world, rear, all));
-  CHECK_FALSE(cb::AtFaultCollision{.standing_speed = 10.5, .look_ahead = 5.0}(world, rear));
+  CHECK_FALSE(cb::AtFaultCollision{.blameless_speed = 10.5, .look_ahead = 5.0}(world, rear));
   world.add_object(rectangle(60, -2, 1, 1));
   CHECK(cb::AtFaultCollision{.look_ahead = 4.0}.among(world, rear, {}));
 }

@@ -17,7 +17,7 @@ TEST_CASE("evaluators, metrics and labels have the documented defaults, units an
                                 DenseTraffic, AtLaneEnd, RightmostLane, LeftmostLane, BeyondPoint, AgentNear,
                                 RelativeSpeed, ZipPartner, SignalAhead, MustGiveWay>() == &R"(
 collision | margin | 0 | m | [0, 100]
-at_fault_collision | standing_speed | 0.05 | m/s | [0, 10]
+at_fault_collision | blameless_speed | 0.05 | m/s | [0, 10]
 at_fault_collision | look_ahead | 0 | s | [0, 60]
 speed_deviation | desired_speed | 15 | m/s | [0, 200]
 lane_change_urgency | horizon | 300 | m | [1, 10000]

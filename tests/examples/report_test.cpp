@@ -118,7 +118,8 @@ TEST_CASE("on a map whose merges are not at its edge the example says what is mi
   Program const program("merging");
   auto const map = corpus::find("opendrive/Town04.xodr");
   if (!map) return;
-  auto const run = program.run({"--scenarios", "1", "--map", map->string(), "--out", "/tmp/never"});
+  browser::TemporaryFolder const folder;
+  auto const run = program.run({"--scenarios", "1", "--map", map->string(), "--out", folder.file("never")});
   CHECK(run.code == 2);
   CHECK(has(run.err, "it has 432 merges, but"));  // behind warnings about the map
 }

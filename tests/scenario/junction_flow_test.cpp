@@ -54,7 +54,7 @@ Flow saturate(JunctionSite const& site, double truck_share, bool lights, double 
     flow.collisions += AnyCollision{}(world);
     for (Slot i{}; index_of(i) < world.size(); ++i) {
       auto& stand = stands[world.roster().agents[i].id];
-      stand = world.frame().agents[i].state.speed < 0.1 ? stand + dt : 0.0;
+      stand = world.frame().agents[i].state.speed < standing_speed ? stand + dt : 0.0;
       flow.longest_stand = std::max(flow.longest_stand, stand);
     }
     auto const gone = inflow.leave(world).size();

@@ -1,5 +1,6 @@
 #include <cambium/cambium.hpp>
 #include <cambium/core/read_file.hpp>
+#include <cambium/core/write_file.hpp>
 #include <cambium/map/road/curve_layout.hpp>
 #include <cambium/scenario/highway_site.hpp>
 #include <cambium/scenario/junction_site.hpp>
@@ -196,9 +197,9 @@ TEST_CASE("bytes name their models, so other worlds that have these read them") 
 TEST_CASE("a set that is written to a file is read from it again, as text or as bytes") {
   auto const map = load_opendrive(maps + "merging.xodr").map;
   auto set = sampled(find_merging_site(map), maps + "merging.xodr", 2);
-  for (char const* name : {"set.json", "set.bin"}) {
-    auto const file = std::filesystem::path(CAMBIUM_BUILD_DIR) / name;
-    write_scenarios(file, set);
+  for (auto const& written : {to_json_text(set), to_bytes(set)}) {
+    auto const file = std::filesystem::path(CAMBIUM_BUILD_DIR) / "set";
+    write_file(file, written);
     CHECK(read_scenarios<MergingSite::World>(file).hash() == set.hash());
   }
 }

@@ -137,7 +137,8 @@ void check_parameters(T const& object, std::string const& where = {}) {
   detail::check_values(type_info<T>(), &object, nullptr, where);
 }
 
-/// True when all fields are equal by `==` (so 0 equals -0, and NaN equals nothing), lists element by element.
+/// True when all fields are equal by `==` (so 0 equals -0, and NaN equals nothing), lists element by element. Of
+/// alternatives without a description only the types are compared.
 template <Described T>
 [[nodiscard]] bool equal_parameters(T const& a, T const& b) {
   return detail::are_equal(type_info<T>(), &a, &b, detail::Equality::of_values);

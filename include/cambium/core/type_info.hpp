@@ -101,15 +101,17 @@ struct TypeInfo {
   std::span<Get const> alternatives = {};              ///< of a OneOf
   std::size_t (*index)(void const* object) = nullptr;  ///< of the alternative that it holds
   void const* (*held)(void const* object) = nullptr;   ///< what it holds; null for nothing
-  void (*select)(void* object,
-                 std::size_t alternative) = nullptr;  ///< makes it hold a default value; an optional: 1 or 0
+  /// Makes it hold the default value of `alternative`, which has to be one that is storable; an optional: 1, or 0 for
+  /// nothing.
+  void (*select)(void* object, std::size_t alternative) = nullptr;
 
   // Of a list or an optional.
   Get element = nullptr;
   std::size_t least = 0, most = any_length;  ///< lengths of a list
   Elements (*elements)(void const* object) = nullptr;
   /// Gives a list `length` elements, one after the other; existing elements are kept and passed to `fill`. `where`: for
-  /// messages of a type that checks its elements.
+  /// messages. Throws `ParameterError` where a list of fixed length has another one; passes on what `fill` and a type
+  /// that checks its elements throw, a vector then with the elements so far.
   void (*fill)(void* object, std::size_t length, std::string const& where, Fill const& fill) = nullptr;
 
   /// Whether it is a number, bool, enum or id.
@@ -412,7 +414,7 @@ TypeInfo const& type_info() {
   return info;
 }
 
-/// A number, bool, enum or id of any type.
+/// A number, bool, enum or id of any type. Its functions take only types with `is_plain()`.
 struct PlainValue {
   TypeInfo::Kind kind;
   double number;       ///< compared with the range
@@ -423,7 +425,7 @@ struct PlainValue {
   /// The lowest and the highest value of a plain type.
   [[nodiscard]] static PlainValue lowest(TypeInfo const& type);
   [[nodiscard]] static PlainValue highest(TypeInfo const& type);
-  /// Writes it to an object of the type that it was made for.
+  /// Writes it to an object of the type that it was made for: no other fits its number and bits.
   void store(void* object, TypeInfo const& type) const;
 
   [[nodiscard]] bool is_id() const { return kind >= TypeInfo::Kind::id && kind <= TypeInfo::Kind::corridor; }

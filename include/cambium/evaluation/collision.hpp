@@ -136,7 +136,7 @@ struct Collision {
 /// (after the at-fault collisions of Dauner et al. 2023). With a `look_ahead`, whether it will, if all keep their
 /// velocities; then only agents count that are ahead of its reference point now. O(agents + objects).
 struct AtFaultCollision {
-  double standing_speed = blameless_speed;
+  double blameless_speed = cambium::blameless_speed;
   double look_ahead = 0.0;
 
   static constexpr char const* name = "at_fault_collision";
@@ -144,7 +144,7 @@ struct AtFaultCollision {
   static constexpr auto parameters() {
     using P = AtFaultCollision;
     return parameter_list(
-        parameter("standing_speed", &P::standing_speed, "m/s", Range{0, 10}, "a slower vehicle counts as stopped"),
+        parameter("blameless_speed", &P::blameless_speed, "m/s", Range{0, 10}, "a slower vehicle counts as stopped"),
         parameter("look_ahead", &P::look_ahead, "s", Range{0, 60}, "time from now, at constant velocities"));
   }
 
@@ -174,7 +174,7 @@ struct AtFaultCollision {
 
   template <class World>
   [[nodiscard]] bool hits(World const& world, Slot slot, Slot other) const {
-    if (world.frame().agents[slot].state.speed < standing_speed || !in_traffic(world, other)) return false;
+    if (world.frame().agents[slot].state.speed < blameless_speed || !in_traffic(world, other)) return false;
     double const behind = look_ahead > 0.0 ? 0.0 : -world.roster().agents[slot].shape.rear;
     return detail::distance_ahead(world, slot, box_at(world, other)) > behind &&
            geometry::intersects(detail::box_after(world, slot, look_ahead),

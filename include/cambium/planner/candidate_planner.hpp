@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/predicted.hpp"
 #include "cambium/planner/search/search_result.hpp"
@@ -29,7 +30,7 @@ struct CandidateWorkspace {
   bool shows_all = false;             ///< for a report; a plan needs no candidate but the chosen one
 
   /// Begins to plan for the agent of `view`: it behaves as `behavior` in the predicted world, all others as `others`.
-  /// Returns false if it is not in traffic.
+  /// Returns false if it is not in traffic. O(agents).
   template <class View, class Ego, class Others>
   [[nodiscard]] bool predict(View const& view, Ego const& behavior, Others const& others) {
     std::optional<Slot> slot;
@@ -52,7 +53,7 @@ struct CandidateWorkspace {
   }
 
   /// Steps the world `steps` times by `step` [s] until `judge(k)`, called after step k, says that ego's course is over.
-  /// With a `course`, the world goes on to the horizon, and all its frames are appended.
+  /// With a `course`, the world goes on to the horizon, and all its frames are appended. O(steps).
   template <class Judge>
   void simulate(int steps, double step, std::vector<Frame>* course, Judge&& judge) {
     bool goes_on = true;
@@ -64,7 +65,7 @@ struct CandidateWorkspace {
   }
 
   /// The plan for the next `dt` [s]: what ego does in the predicted world, in equal steps of at most `step` [s]. Ego's
-  /// behaviour there must be `Model`; its memory is read into `memory`.
+  /// behaviour there must be `Model`; its memory is read into `memory`. O(steps).
   template <class Model, class View>
   [[nodiscard]] Plan<View> drive(View const&, double dt, double step, MemoryOf<Model>& memory) {
     Plan<View> plan;
@@ -77,7 +78,9 @@ struct CandidateWorkspace {
       plan.trajectory.push_back(record.state);
       plan.trajectory.back().time = i + 1 == steps ? begin + dt : world->time();
     }
-    memory = *std::get_if<World::Behaviors::template index<Model>>(&world->frame().agents[ego].memory);
+    auto const* const after = std::get_if<World::Behaviors::template index<Model>>(&world->frame().agents[ego].memory);
+    CAMBIUM_ASSERT(after != nullptr, "CandidateWorkspace::drive: ego's behaviour in the predicted world is no Model");
+    memory = *after;
     return plan;
   }
 };

@@ -15,7 +15,6 @@
 #include "cambium/core/json.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/read_file.hpp"
-#include "cambium/core/write_file.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/scenario/detail/scenario_maps.hpp"
 #include "cambium/scenario/scenario_set.hpp"
@@ -152,14 +151,6 @@ template <class WorldType>
   detail::PackedSet<WorldType> packed{{}, detail::as_in_file(set, lanes)};
   packed.lanes = lanes.names();
   return to_binary(packed);
-}
-
-/// Writes a set atomically: as JSON if the name of the file ends with .json, else as bytes. Map files are named as in
-/// `Scenario::map_file`, so relative ones must fit the folder of `path`. Throws as `to_json_text`, and `Error` if the
-/// file cannot be written.
-template <class WorldType>
-void write_scenarios(std::filesystem::path const& path, ScenarioSet<WorldType> const& set) {
-  write_file(path, path.extension() == ".json" ? to_json_text(set) : to_bytes(set));
 }
 
 }  // namespace cambium

@@ -122,7 +122,6 @@ struct Intersection {
  private:
   using Other = detail::ConflictUser;
 
-  static constexpr double starting = detail::starting_speed;
   static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
   static constexpr double air = 0.3;             // [m] distance kept to a conflict
   static constexpr double longest_wait = 40.0;   // [s] beyond its patience, until it drives up to the conflict
@@ -168,7 +167,7 @@ struct Intersection {
   /// Counts the time at a standstill, before the junction and within it. A driver that has begun to creep keeps its
   /// place in the order.
   static void remember(Memory& memory, Own const& own, bool is_red, double dt) {
-    if (own.speed > starting && (own.is_inside_junction || !own.is_near_line)) memory.waited = 0.0f;
+    if (own.speed > detail::starting_speed && (own.is_inside_junction || !own.is_near_line)) memory.waited = 0.0f;
     bool const stands = own.speed < standing_speed && own.wait().at_line && !is_red;
     if (memory.waited == 0.0f) {
       auto const before = std::exchange(memory.stopped_before, own.standing);
@@ -237,7 +236,7 @@ struct Intersection {
     own.patience = patience;
     own.dt = dt;
     own.braking = rules.safe_deceleration;
-    own.notes_standing = own.waited == 0.0 && own.speed < starting;
+    own.notes_standing = own.waited == 0.0 && own.speed < detail::starting_speed;
     own.is_far = first.hold[1][1] - own.front > longest_stop(own, dt);
     own.highest = own.desired_speed;
     if (rules.slow_for_bends && !own.is_far)
@@ -252,7 +251,7 @@ struct Intersection {
   }
 
   [[nodiscard]] static bool is_in_queue(Constraint const& leader) {
-    return leader.gap < infinite && leader.speed <= starting;
+    return leader.gap < infinite && leader.speed <= detail::starting_speed;
   }
 
   [[nodiscard]] double hardest() const { return -idm.lowest_acceleration; }
@@ -379,7 +378,7 @@ struct Intersection {
                                                Strictest<IdmLaw>& ahead) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
     detail::NextToEnter noted, asked;
-    bool is_known = own.speed >= starting;
+    bool is_known = own.speed >= detail::starting_speed;
     auto const first = [&]() -> std::optional<RoadUser> const& {
       if (!std::exchange(is_known, true)) asked = first_before(view, conflict, own);
       return asked.user;
@@ -399,7 +398,7 @@ struct Intersection {
         };
         own.meets_large = own.meets_large || (large && comes_next());
         auto const is_behind_slow = [&] {
-          return first() && first()->speed < starting && first()->agent != user.agent;
+          return first() && first()->speed < detail::starting_speed && first()->agent != user.agent;
         };
         Other const other{user, at, detail::extra_reach(view, large, user.front, user.rear),
                           own.waited >= own.patience && is_behind_slow()};

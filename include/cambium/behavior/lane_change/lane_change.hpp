@@ -181,7 +181,7 @@ struct LaneChangeCourse {
     return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
   }
 
-  static constexpr double slow = 4.0;  ///< a road user up to this speed stands or is about to [m/s]
+  static constexpr double slow = 4.0;  ///< a road user up to this speed stands or is about to [m/s]; own choice
 };
 
 namespace detail {

@@ -65,9 +65,10 @@ namespace cambium {
 
 namespace detail {
 
-/// A vehicle slower than this at a junction or a merge has hardly begun to move, or is about to stop [m/s].
+/// A vehicle slower than this at a junction or a merge has hardly begun to move, or is about to stop [m/s]. Own
+/// choice.
 inline constexpr double starting_speed = 2.5;
-/// Acceleration of a vehicle that leaves a junction or merges [m/s^2].
+/// Acceleration of a vehicle that leaves a junction or merges [m/s^2]. Own choice.
 inline constexpr double pull_away = 1.0;
 
 /// Highest speed [m/s] at position `s` [m] of a corridor from which a driver who brakes by `deceleration` [m/s^2]

@@ -68,7 +68,9 @@ struct BesideOf {
     return at && at->lanes == (left ? -1 : 1);
   }
 };
+/// Drives in the lane to the left of the other's.
 using LeftOf = BesideOf<true>;
+/// Drives in the lane to the right of the other's.
 using RightOf = BesideOf<false>;
 
 /// Whether the agent is in front of the other or behind it, along the lanes of its road, in the same or another: the
@@ -89,7 +91,9 @@ struct ClearOf {
     return at && (front ? at->way + its.front <= -own.rear : at->way - its.rear >= own.front);
   }
 };
+/// Is in front of the other, in any lane of its road.
 using FrontOf = ClearOf<true>;
+/// Is behind the other, in any lane of its road.
 using BehindOf = ClearOf<false>;
 
 /// Whether the other is the next road user in the agent's lane, ahead or behind; those that have yet to merge do not
@@ -110,7 +114,9 @@ struct NextInLane {
     return next && next->agent == world.roster().agents[other].id;
   }
 };
+/// The other is the next one ahead in the lane.
 using PrecedingAgent = NextInLane<true>;
+/// The other is the next one behind in the lane.
 using SucceedingAgent = NextInLane<false>;
 
 namespace detail {

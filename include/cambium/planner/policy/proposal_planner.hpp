@@ -318,7 +318,7 @@ struct ProposalPlanner {
     AtFaultCollision at_fault;
     for (double const part : {1.0 / 3, 2.0 / 3, 1.0}) {
       at_fault.look_ahead = part * scoring.look_ahead;
-      if (now.speed > at_fault.standing_speed && at_fault.among(world, ego, workspace.to_avoid))
+      if (now.speed > at_fault.blameless_speed && at_fault.among(world, ego, workspace.to_avoid))
         proposal.time_to_collision = 0.0;
     }
     double const along = (now.speed - before.speed) / step;
