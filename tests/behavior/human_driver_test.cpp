@@ -125,13 +125,13 @@ TEST_CASE_TEMPLATE("a human without imperfections drives as the nominal behaviou
                    cb::Intersection) {
   Twins<Nominal> nominal(straight_road(3, 1000.0), {.seed = 3});
   for (int i = 0; i < 12; ++i) {
-    Nominal driver{};
-    if constexpr (requires { driver.idm; }) driver.idm.desired_speed = 10.0 + i;
+    Nominal behavior{};
+    if constexpr (requires { behavior.idm; }) behavior.idm.desired_speed = 10.0 + i;
     nominal.add({.position = {15.0 * i + 5.0, i % 3 == 0   ? -5.25
                                               : i % 3 == 1 ? -1.75
                                                            : -8.75},
                  .speed = 8.0 + i % 5,
-                 .behavior = driver});
+                 .behavior = behavior});
   }
   nominal.add_object(cb::geometry::Polygon({{300, -3}, {301, -3}, {301, -0.5}, {300, -0.5}}));
   auto human = nominal;
@@ -148,15 +148,14 @@ TEST_CASE_TEMPLATE("a human without imperfections drives as the nominal behaviou
 }
 
 TEST_CASE("a human without imperfections does so among cyclists, and where it observes with errors") {
-  using Human = cb::HumanDriver<cb::IdmClassic>;
   using Noisy = cb::World<cb::BehaviorSet<cb::IdmClassic, Human>, cb::InterpolateExecution, cb::SingleTrack,
                           cb::ParametricObserver>;
   cb::ObservationNoise const noise{.along = 0.3, .across = 0.1, .speed = 0.2};
   auto const drive = [&](bool human) {
     Noisy world(straight_road(1, 1000.0), {.seed = 3});
-    cb::IdmClassic const driver{.desired_speed = 12.0};
-    Noisy::Behaviors::Any behavior = driver;
-    if (human) behavior = Human{.nominal = driver, .reaction_time = 0.0, .gap_error = 0.0, .rate_error = 0.0};
+    cb::IdmClassic const exact{.desired_speed = 12.0};
+    Noisy::Behaviors::Any behavior = exact;
+    if (human) behavior = Human{.nominal = exact, .reaction_time = 0.0, .gap_error = 0.0, .rate_error = 0.0};
     for (int i = 0; i < 8; ++i) {
       bool const cycles = i % 2 == 1;
       world.add({.position = {20.0 + 25.0 * i, cycles ? -3.0 : -1.75},

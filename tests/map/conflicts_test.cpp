@@ -142,6 +142,28 @@ TEST_CASE("bodies touch only within the zones of a conflict, and each place wher
   }
 }
 
+TEST_CASE("where smaller bodies touch at places apart within the zone of the largest, each place is a zone") {
+  auto const map = support::corpus_map("libopendrive_test.xodr");
+  if (!map) return;
+  int places = 0;
+  for (auto const& [lane, passage] : passages(*map)) {
+    auto const conflicts = passage.conflicts();
+    for (std::size_t j = 0; j < conflicts.size(); ++j)
+      for (std::size_t i = 0; i < j; ++i) {
+        auto const &a = *conflicts[i], &b = *conflicts[j];
+        if (a.other != b.other || a.hull().begin != b.hull().begin || a.hull().end != b.hull().end) continue;
+        for (auto const& [own, other] : {std::pair(0, 0), {0, 1}, {1, 0}}) {
+          auto const &first = a.zones[own][other], &second = b.zones[own][other];
+          if (first.empty() || second.empty()) continue;
+          ++places;
+          CHECK(std::max(second.begin - first.end, first.begin - second.end) >= 5.0);
+          CHECK(std::max(second.other_begin - first.other_end, first.other_begin - second.other_end) >= 5.0);
+        }
+      }
+  }
+  CHECK(places > 0);
+}
+
 TEST_CASE("conflicts are in the order in which one has to wait for them, and know how far those before reach") {
   for (auto const& [name, map] : junction_maps())
     for (auto const& [lane, passage] : passages(*map)) {

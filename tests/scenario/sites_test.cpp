@@ -160,6 +160,22 @@ TEST_CASE("vehicles on the ramp have the lane behind the merge as their goal, an
   }
 }
 
+TEST_CASE("who insists at the merge is drawn apart from the traffic, and stays the same") {
+  auto const site = own_site<MergingSite>();
+  std::string insisting;
+  for (std::uint32_t number = 0; number < 4; ++number) {
+    auto const yielding = site.sample(7, number), mixed = site.sample(7, number, {.non_yielding_share = 0.5});
+    REQUIRE(mixed.agents.size() == yielding.agents.size());
+    for (std::size_t i = 0; i < mixed.agents.size(); ++i) {
+      CHECK(mixed.agents[i].position == yielding.agents[i].position);
+      bool const insists = std::get<IdmClassic>(mixed.agents[i].behavior).rules.merging == Merging::ignored;
+      insisting += insists ? '!' : '.';
+    }
+    insisting += ' ';
+  }
+  CHECK(insisting == "........!...!!!.!!.!!!. ..........!!!.!.!!...!!!! ..........!.!.!!.!.!.. ........!..!!!!.!.! ");
+}
+
 TEST_CASE("traffic at junctions has the shares that are asked for, and lights in turn") {
   auto const site = own_site<JunctionSite>();
   auto const count = [&](JunctionTraffic const& traffic, geometry::Shape const& shape) {
