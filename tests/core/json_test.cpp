@@ -11,6 +11,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
+#include "../support/allocations.hpp"
 #include "../support/described.hpp"
 
 using namespace cambium;
@@ -184,10 +185,12 @@ TEST_CASE("a list whose elements repeat may be long, but not endless") {
       return detail::sealed(longer + content.substr(length_at + 1) + std::string(elements - 2, '\0'));
     };
     CHECK_NOTHROW(static_cast<void>(from_binary<List>(with(1000))));
+    auto const before = support::allocated_bytes();
     CHECK_THROWS_WITH_AS(static_cast<void>(from_binary<List>(with(1'000'000), "f.bin")),
                          "f.bin: expands to far more memory than a file of its size should; take another copy; if this "
                          "one is sound, store lists that repeat only once",
                          ParameterError);
+    CHECK(support::allocated_bytes() - before < 512'000'000);  // not 1'000'000 elements of 4 kB
   };
   using Book = One<std::array<double, 500>>;
   using Reader = One<std::shared_ptr<std::vector<double> const>>;
