@@ -371,6 +371,7 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
   constexpr bool keeps = !std::is_same_v<Keep, KeepNothing>;
   auto drive = [choose = std::move(choose), keep = std::move(keep), name](Scenario<ScenarioWorld> const& scenario,
                                                                           RunOptions const& options, bool records) {
+    static_cast<void>(keep);  // unused by `KeepNothing`
     Run run;
     detail::PlanClock clock{.step_ms = 1e3 * options.time_step};
     std::optional<WorldRecorder> film;
