@@ -513,7 +513,7 @@ TEST_CASE("costs count beside returns by their weight") {
 }
 
 TEST_CASE("costs are discounted in the tree and beyond it") {
-  for (std::size_t const iterations : {1, 20}) {
+  for (std::size_t const iterations : {1u, 20u}) {
     TreeSearch<Debt> search({}, {.horizon = 3, .constraint = {.discount = 0.5}}, {}, {}, {iterations});
     CHECK(search.run(0, 1).of(0)[0].mean_cost == doctest::Approx(0.25));
     // A limit bounds a probability: then they count in full.
@@ -578,7 +578,7 @@ TEST_CASE("missing or too many actions are found in roll-outs too, and a faulty 
     CHECK_THROWS_AS((void)result.of(0), SearchError);
   }
   for (double const cost : {1.5, -0.5}) {
-    for (std::size_t const iterations : {1, 3000}) {  // in the roll-out, in the tree
+    for (std::size_t const iterations : {1u, 3000u}) {  // in the roll-out, in the tree
       TreeSearch<Walk> costly(Walk{{}, 2, cost}, {.horizon = 10}, {}, {}, {iterations});
       CHECK(costly.run(iterations == 1 ? 0 : 5, 1).problem == SearchProblem::cost_out_of_range);
       auto const where = iterations == 1 ? std::string("search, at step 6") : "search, at step 1";
