@@ -9,8 +9,8 @@
 using namespace planner_fixtures;
 
 TEST_CASE("the tree has each sequence with at most one change exactly once") {
-  for (std::size_t const actions : {1, 2, 9})
-    for (std::size_t const layers : {1, 2, 5})
+  for (std::size_t const actions : {1u, 2u, 9u})
+    for (std::size_t const layers : {1u, 2u, 5u})
       for (std::uint8_t ongoing = 0; ongoing < actions; ++ongoing) {
         std::vector<std::uint8_t> choices(actions);
         std::iota(choices.begin(), choices.end(), std::uint8_t{0});
