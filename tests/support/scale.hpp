@@ -20,4 +20,15 @@ inline std::uint32_t runs(double usual) {
   return static_cast<std::uint32_t>(std::clamp(std::round(usual * factor), 1.0, 1e9));
 }
 
+/// Whether this is a build of `tests/run --sanitize`, which takes more memory than others.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define CAMBIUM_HAS_SANITIZER true
+#endif
+#endif
+#ifndef CAMBIUM_HAS_SANITIZER
+#define CAMBIUM_HAS_SANITIZER false
+#endif
+inline constexpr bool has_sanitizer = CAMBIUM_HAS_SANITIZER;
+
 }  // namespace support

@@ -256,8 +256,8 @@ say('dragged', document.getElementById('found').textContent);
 TEST_CASE("an address opens a map's page at its place") {
   auto const page = after("say('at', place(600, 400), scale() * 60 / innerWidth);", "at=12,-7.5,60");
   if (page.empty()) return;
-  auto const& map = *support::own_map("intersection_4way.xodr");
-  auto const box = map.bounds().grown(5.0);
+  auto const map = support::own_map("intersection_4way.xodr");
+  auto const box = map->bounds().grown(5.0);
   auto const at = numbers(page, "at");
   REQUIRE(at.size() == 3);
   CHECK(at[0] + box.min_x == doctest::Approx(12.0).epsilon(0.01));
