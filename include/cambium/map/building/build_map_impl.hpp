@@ -83,10 +83,14 @@ class MapBuild {
   [[nodiscard]] std::shared_ptr<Map const> build() {
     add_lanes();
     link_lanes();
-    return finish();
+    set_rules();
+    ExactPaths const paths(parts_.roads, parts_.lanes, parts_.options);
+    return finish([&paths](Lane const& lane, double s) { return paths.at(lane, s); });
   }
 
-  // The stages of `build`, in their order:
+  // The stages of `build`, in their order. Who does one of them in another way changes `parts`.
+
+  [[nodiscard]] Map::Parts& parts() { return parts_; }
 
   /// Roads, and lanes with their geometry and neighbours.
   void add_lanes() {
@@ -115,17 +119,20 @@ class MapBuild {
     check.report_joints(parts_.lanes);
   }
 
-  /// Limits, marks, junctions, overlaps: all that a world needs.
-  [[nodiscard]] std::shared_ptr<Map const> finish() {
+  /// Limits, marks, signs and lights.
+  void set_rules() {
     set_speed_limits(document_, parts_.lanes);
     set_lane_changes(document_, parts_.lanes);
     parts_.lights = LaneSignals(document_, parts_.lanes).set();
+  }
+
+  /// Junctions and overlaps: all that a world needs.
+  [[nodiscard]] std::shared_ptr<Map const> finish(ExactPath const& path) {
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
-    ExactPaths const paths(parts_.roads, parts_.lanes, parts_.options);
     find_overlaps(
         parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
-        parts_.options.overlap_clearance, [&paths](Lane const& lane, double s) { return paths.at(lane, s); });
+        parts_.options.overlap_clearance, path);
     return std::make_shared<Map const>(std::move(parts_));
   }
 

@@ -7,6 +7,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/road/reference_line.hpp"
 
 namespace cambium::map {
 
@@ -17,6 +18,9 @@ namespace cambium::map {
 /// `curve_through`, and for widths that are negative or not as many as needed.
 [[nodiscard]] RoadPlan lane_along(std::span<geometry::Point const> center, std::span<SideWidths const> widths,
                                   std::span<double const> headings = {}, std::string id = {});
+
+/// The same along a line that is laid out already, with one width or one at each end of its geometries.
+[[nodiscard]] RoadPlan lane_along(std::vector<Geometry> line, std::span<SideWidths const> widths, std::string id = {});
 
 /// A road with the lanes -1, -2, ... between `borders`: polylines in travel direction from left to right, one more than
 /// there are lanes. The leftmost border becomes the reference line (`curve_through`), the others are met exactly every

@@ -23,15 +23,15 @@ namespace detail {
 }
 }  // namespace detail
 
-CAMBIUM_COLD RoadPlan lane_along(std::span<geometry::Point const> center, std::span<SideWidths const> widths,
-                                 std::span<double const> headings, std::string id) {
+CAMBIUM_COLD RoadPlan lane_along(std::vector<Geometry> line, std::span<SideWidths const> widths, std::string id) {
   auto const where = detail::name_of_road(id, "polyline");
-  if (widths.size() != 1 && widths.size() != center.size())
+  if (widths.size() != 1 && widths.size() != line.size() + 1)
     throw MapError(
-        where, "it has " + std::to_string(center.size()) + " points, but " + std::to_string(widths.size()) + " widths",
-        "give one, or one per point");
+        where,
+        "it has " + std::to_string(line.size()) + " geometries, but " + std::to_string(widths.size()) + " widths",
+        "give one, or one at each end of a geometry");
   RoadPlan plan;
-  plan.line = curve_through(center, headings, where);
+  plan.line = std::move(line);
   auto const stations = detail::stations_of(plan.line);
   std::vector<double> offsets, whole;
   for (std::size_t i = 0; i < widths.size(); ++i) {
@@ -52,6 +52,16 @@ CAMBIUM_COLD RoadPlan lane_along(std::span<geometry::Point const> center, std::s
   plan.sections = {{.right = {{.widths = profile(whole)}}}};
   plan.id = std::move(id);
   return plan;
+}
+
+CAMBIUM_COLD RoadPlan lane_along(std::span<geometry::Point const> center, std::span<SideWidths const> widths,
+                                 std::span<double const> headings, std::string id) {
+  auto const where = detail::name_of_road(id, "polyline");
+  if (widths.size() != 1 && widths.size() != center.size())
+    throw MapError(
+        where, "it has " + std::to_string(center.size()) + " points, but " + std::to_string(widths.size()) + " widths",
+        "give one, or one per point");
+  return lane_along(curve_through(center, headings, where), widths, std::move(id));
 }
 
 CAMBIUM_COLD RoadPlan lanes_between(std::span<std::vector<geometry::Point> const> borders, std::string id) {

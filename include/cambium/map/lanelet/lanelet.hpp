@@ -35,7 +35,8 @@ struct Lanelet {
   bool both_directions = false;         ///< driven either way
   bool in_junction = false;             ///< the file says that it lies in an intersection
   std::vector<LaneletSignal> signals{};
-  opendrive::FileLine line{};  ///< for messages
+  std::vector<std::int64_t> goes_before{};  ///< lanelets of its junction whose traffic gives way to its own
+  opendrive::FileLine line{};               ///< for messages
 
   friend bool operator==(Lanelet const&, Lanelet const&) = default;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,7 +17,8 @@
 namespace cambium::map {
 
 /// Projection of a Lanelet2 file's coordinates to metres: transverse Mercator in the UTM zone of the origin, which
-/// becomes (0, 0), as by Lanelet2's UTM projector. INTERACTION's maps have the origin (0, 0).
+/// becomes (0, 0), as by Lanelet2's UTM projector. The file does not say which origin it was made with; without one, it
+/// is the middle of the map, but (0, 0) for maps near there, such as INTERACTION's.
 struct Lanelet2Origin {
   double latitude = 0.0;   ///< [degrees], north positive
   double longitude = 0.0;  ///< [degrees], east positive
@@ -37,11 +39,11 @@ struct Lanelet2Origin {
 /// mixed lines; `turn_direction` (it lies in an intersection); right of way, all-way stops, traffic lights and signs
 /// (205, 206, 301, 306) with their stop lines. Throws `MapError` where the text is no OSM file, has no lanelets, or a
 /// place is no number; what else is odd goes to `diagnostics`. Linear in the text.
-[[nodiscard]] std::vector<Lanelet> read_lanelet2(std::string_view text, Lanelet2Origin const& origin,
+[[nodiscard]] std::vector<Lanelet> read_lanelet2(std::string_view text, std::optional<Lanelet2Origin> const& origin,
                                                  std::string const& file, std::vector<Diagnostic>& diagnostics);
 
 /// The map of a Lanelet2 file. Throws as `read_lanelet2` and `build_lanelet_map`, and where the file cannot be read.
-[[nodiscard]] LaneletMap load_lanelet2(std::string const& path, Lanelet2Origin const& origin = {},
+[[nodiscard]] LaneletMap load_lanelet2(std::string const& path, std::optional<Lanelet2Origin> const& origin = {},
                                        MapOptions const& options = {});
 
 }  // namespace cambium::map

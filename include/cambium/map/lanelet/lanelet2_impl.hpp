@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <pugixml.hpp>
@@ -13,6 +14,8 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/text.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/box.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
 #include "cambium/map/lanelet/detail/utm.hpp"
 #include "cambium/map/lanelet/lanelet2.hpp"
@@ -28,8 +31,8 @@ class Lanelet2Reader {
   Lanelet2Reader(std::string_view text, std::string const& file, std::vector<Diagnostic>& diagnostics)
       : context_(text, file, diagnostics) {}
 
-  [[nodiscard]] std::vector<Lanelet> read(pugi::xml_node root, Lanelet2Origin const& origin) {
-    read_nodes(root, UtmProjection(origin.latitude, origin.longitude));
+  [[nodiscard]] std::vector<Lanelet> read(pugi::xml_node root, std::optional<Lanelet2Origin> const& origin) {
+    read_nodes(root, origin);
     for_each_child(root, "way", [&](pugi::xml_node node) { read_way(node); });
     for_each_child(root, "relation", [&](pugi::xml_node node) {
       if (tag(node, "type") == "lanelet") read_lanelet(node);
@@ -37,6 +40,8 @@ class Lanelet2Reader {
     for_each_child(root, "relation", [&](pugi::xml_node node) {
       if (tag(node, "type") == "regulatory_element") read_rule(node);
     });
+    set_priorities();
+    report_unread();
     link();
     if (lanelets_.empty())
       throw MapError(context_.file(), "it has no usable lanelet",
@@ -52,6 +57,7 @@ class Lanelet2Reader {
   struct Way {
     std::vector<Id> nodes;
     std::string type, subtype;
+    std::optional<bool> change{}, change_left{}, change_right{};  ///< tags lane_change, :left, :right, as the way runs
   };
   /// A bound: the way, and the way round in which the lanelet has it.
   struct Bound {
@@ -72,6 +78,13 @@ class Lanelet2Reader {
     return {};
   }
 
+  /// What a tag says, as Lanelet2 reads it; nothing where it is no truth value.
+  [[nodiscard]] static std::optional<bool> truth(std::string_view word) {
+    if (word == "yes" || word == "true" || word == "1") return true;
+    if (word == "no" || word == "false" || word == "0") return false;
+    return std::nullopt;
+  }
+
   [[nodiscard]] std::string at(pugi::xml_node node) {
     return context_.file() + ":" + std::to_string(context_.line(node));
   }
@@ -87,8 +100,9 @@ class Lanelet2Reader {
     return id;
   }
 
-  void read_nodes(pugi::xml_node root, UtmProjection const& projection) {
-    std::map<Id, Point> local;
+  void read_nodes(pugi::xml_node root, std::optional<Lanelet2Origin> const& given) {
+    std::map<Id, Point> local, degrees;  // of these x is the longitude
+    geometry::Box box;
     for_each_child(root, "node", [&](pugi::xml_node node) {
       auto const id = id_of(node);
       if (!id) return;
@@ -96,28 +110,57 @@ class Lanelet2Reader {
       if (x && y) local.emplace(*id, Point{*x, *y});
       auto const latitude = parse_number<double>(node.attribute("lat").value()),
                  longitude = parse_number<double>(node.attribute("lon").value());
-      Point const place = latitude && longitude && std::abs(*latitude) <= 84.0 && std::abs(*longitude) <= 180.0
-                              ? projection(*latitude, *longitude)
-                              : Point{std::nan(""), std::nan("")};
-      if (!place.allFinite() && !(x && y))
+      bool const is_placed = latitude && longitude && std::abs(*latitude) <= 84.0 && std::abs(*longitude) <= 180.0;
+      if (!is_placed && !(x && y))
         throw MapError(at(node),
                        "node " + std::to_string(*id) +
                            " has no place: lat and lon are not both numbers of degrees within the UTM grid",
                        "repair the node, or give it tags local_x and local_y in metres");
-      nodes_.emplace(*id, place);
+      degrees.emplace(*id, is_placed ? Point{*longitude, *latitude} : Point{std::nan(""), std::nan("")});
+      if (is_placed) box.add(*longitude, *latitude);
     });
-    if (!local.empty() && local.size() == nodes_.size()) nodes_ = std::move(local);
-    for (auto const& [id, place] : nodes_)
+    if (!local.empty() && local.size() == degrees.size()) return static_cast<void>(nodes_ = std::move(local));
+    for (auto const& [id, place] : degrees)
       if (!place.allFinite())
         throw MapError(context_.file(),
                        "node " + std::to_string(id) + " has only a local place, and other nodes have none",
                        "give all nodes local_x and local_y, or all lat and lon");
+    if (degrees.empty()) return;
+    auto const origin = given.value_or(middle_of(box));
+    warn_if_far(box, origin);
+    UtmProjection const projection(origin.latitude, origin.longitude);
+    for (auto const& [id, place] : degrees) nodes_.emplace(id, projection(place.y(), place.x()));
+  }
+
+  /// The middle of a map [degrees]; (0, 0) for one near there.
+  [[nodiscard]] static Lanelet2Origin middle_of(geometry::Box const& degrees) {
+    constexpr double near = 0.9;  // [degrees], 100 km
+    if (geometry::Box{-near, -near, near, near}.contains(degrees)) return {};
+    return {.latitude = degrees.center().y(), .longitude = degrees.center().x()};
+  }
+
+  void warn_if_far(geometry::Box const& degrees, Lanelet2Origin const& origin) {
+    constexpr double far = 100.0, of_degree = 111.2;  // [km]
+    double const north = std::max(std::abs(degrees.max_y - origin.latitude), std::abs(degrees.min_y - origin.latitude)),
+                 east =
+                     std::max(std::abs(degrees.max_x - origin.longitude), std::abs(degrees.min_x - origin.longitude));
+    double const way = of_degree * std::hypot(north, east * std::cos(origin.latitude * geometry::pi / 180));
+    if (way > far)
+      context_.report(Severity::warning, 0, "node",
+                      "places lie up to " + cambium::detail::rounded_text(std::round(way)) +
+                          " km from the origin, where the projection distorts lengths; give one near the map");
   }
 
   void read_way(pugi::xml_node node) {
     auto const id = id_of(node);
     if (!id) return;
     Way way{{}, std::string(tag(node, "type")), std::string(tag(node, "subtype"))};
+    way.change = truth(tag(node, "lane_change"));
+    way.change_left = truth(tag(node, "lane_change:left"));
+    way.change_right = truth(tag(node, "lane_change:right"));
+    if (!way.change && way.change_left.has_value() != way.change_right.has_value())
+      warn(node, "way " + std::to_string(*id) + " has lane_change:" + (way.change_left ? "left" : "right") +
+                     " without the other side; nobody changes lanes that way");
     for_each_child(node, "nd", [&](pugi::xml_node child) {
       auto const ref = context_.number<Id>(child, "ref");
       if (ref && nodes_.contains(*ref))
@@ -162,16 +205,56 @@ class Lanelet2Reader {
     return found;
   }
 
-  [[nodiscard]] static std::optional<LaneType> type_of(std::string_view subtype) {
-    constexpr std::pair<std::string_view, LaneType> types[] = {
-        {"", LaneType::driving},        {"road", LaneType::driving},
-        {"highway", LaneType::driving}, {"play_street", LaneType::driving},
-        {"exit", LaneType::driving},    {"emergency_lane", LaneType::shoulder},
-        {"bus_lane", LaneType::bus},    {"bicycle_lane", LaneType::biking},
-        {"walkway", LaneType::walking}, {"shared_walkway", LaneType::walking},
-        {"parking", LaneType::parking}};
-    for (auto const& [word, type] : types)
-      if (word == subtype) return type;
+  /// What a subtype means: the kind of lane, and the speed limits of Lanelet2's German rules within and outside of
+  /// towns (GermanTrafficRules and lanelet2_traffic_rules' table) [km/h], 0: none.
+  struct Subtype {
+    std::string_view word;
+    LaneType type;
+    double urban = 0.0, rural = 0.0;
+  };
+  [[nodiscard]] static Subtype const* find_subtype(std::string_view word) {
+    static constexpr Subtype all[] = {{"", LaneType::driving, 50, 50},
+                                      {"road", LaneType::driving, 50, 100},
+                                      {"highway", LaneType::driving, 130, 130},
+                                      {"play_street", LaneType::driving, 7, 7},
+                                      {"exit", LaneType::driving, 50, 50},
+                                      {"bus_lane", LaneType::bus, 50, 100},
+                                      {"emergency_lane", LaneType::shoulder},
+                                      {"road_shoulder", LaneType::shoulder},
+                                      {"bicycle_lane", LaneType::biking},
+                                      {"walkway", LaneType::walking},
+                                      {"shared_walkway", LaneType::walking},
+                                      {"pedestrian_lane", LaneType::walking},
+                                      {"crosswalk", LaneType::walking},
+                                      {"stairs", LaneType::walking},
+                                      {"parking", LaneType::parking}};
+    auto const* const found =
+        std::find_if(std::begin(all), std::end(all), [&](auto const& s) { return s.word == word; });
+    return found == std::end(all) ? nullptr : found;
+  }
+
+  /// The kind of lane: that of its subtype, unless tags `participant:...` say who may use it.
+  [[nodiscard]] static std::optional<LaneType> type_of(pugi::xml_node node, Subtype const* subtype) {
+    constexpr std::string_view prefix = "participant:";
+    bool any = false, cars = false, buses = false, bicycles = false, walkers = false, emergency = false;
+    for (auto child = node.first_child(); child; child = child.next_sibling()) {
+      std::string_view const key = child.attribute("k").value();
+      if (local_name(child) != "tag" || !key.starts_with(prefix)) continue;
+      any = true;
+      if (truth(child.attribute("v").value()) != true) continue;
+      auto const who = key.substr(prefix.size());
+      cars = cars || who == "vehicle" || who == "vehicle:car";
+      buses = buses || who == "vehicle:bus" || who == "vehicle:taxi";
+      emergency = emergency || who == "vehicle:emergency";
+      bicycles = bicycles || who == "bicycle";
+      walkers = walkers || who.starts_with("pedestrian");
+    }
+    if (!any) return subtype != nullptr ? std::optional(subtype->type) : std::nullopt;
+    if (cars) return subtype != nullptr && is_drivable(subtype->type) ? subtype->type : LaneType::driving;
+    if (buses) return LaneType::bus;
+    if (bicycles) return LaneType::biking;
+    if (walkers) return LaneType::walking;
+    if (emergency) return LaneType::shoulder;
     return std::nullopt;
   }
 
@@ -183,7 +266,7 @@ class Lanelet2Reader {
     auto const unit = trimmed(text.substr(number_end));
     if (!value || !(*value > 0.0)) return std::nullopt;
     if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return *value / 3.6;
-    if (unit == "mph") return *value * 0.44704;
+    if (unit == "mph" || unit == "m/h") return *value * 0.44704;
     if (unit == "m/s" || unit == "mps") return value;
     return std::nullopt;
   }
@@ -191,23 +274,29 @@ class Lanelet2Reader {
   void read_lanelet(pugi::xml_node node) {
     auto const id = id_of(node);
     if (!id) return;
-    auto const subtype = tag(node, "subtype");
-    auto const type = type_of(subtype);
+    auto const word = tag(node, "subtype");
+    auto const* const subtype = find_subtype(word);
+    auto const type = type_of(node, subtype);
     if (!type)
       return context_.report(Severity::info, node,
-                             "a lanelet of the subtype " + std::string(subtype) + " is no lane here; it was left out");
+                             "lanelet " + std::to_string(*id) + " of the subtype " + std::string(word) +
+                                 " is for nobody who drives, cycles or walks; it was left out");
     auto const left = bound_way(node, "left"), right = bound_way(node, "right");
     if (!left || !right) return warn(node, "lanelet " + std::to_string(*id) + " lacks a bound; it was left out");
     Read read;
     read.lanelet.id = *id;
     read.lanelet.line = context_.line(node);
     read.lanelet.type = *type;
-    read.lanelet.both_directions = tag(node, "one_way") == "no" && is_drivable(*type);
+    auto const one_way = truth(tag(node, "one_way:vehicle"));
+    read.lanelet.both_directions = is_drivable(*type) && !one_way.value_or(truth(tag(node, "one_way")).value_or(true));
     read.lanelet.in_junction = !tag(node, "turn_direction").empty();
     if (auto const limit = tag(node, "speed_limit"); !limit.empty()) {
       read.lanelet.speed_limit = speed_of(limit);
       if (!read.lanelet.speed_limit) warn(node, "speed_limit=" + std::string(limit) + " is no speed; it was left out");
     }
+    auto const* const usual = subtype != nullptr && is_drivable(subtype->type) ? subtype : find_subtype("road");
+    if (!read.lanelet.speed_limit && is_drivable(*type))
+      read.lanelet.speed_limit = (tag(node, "location") == "nonurban" ? usual->rural : usual->urban) / 3.6;
     set_bounds(read, *left, *right);
     for_each_member(node, "regulatory_element", [&](pugi::xml_node, Id ref) { read.rules.push_back(ref); });
     if (!places_.emplace(*id, lanelets_.size()).second)
@@ -239,16 +328,15 @@ class Lanelet2Reader {
     read.lanelet.may_change_right = may_cross(r, true);
   }
 
-  /// Whether the line may be crossed, from its left side or from its right one as `bound` runs.
-  [[nodiscard]] bool may_cross(Bound const& bound, bool from_left) const {
+  /// Whether a vehicle may cross the line to its right side as `bound` runs, or to its left one: what its tags say,
+  /// else its look (Lanelet2's GenericTrafficRules). Virtual lines are for junctions: nobody changes lanes there.
+  [[nodiscard]] bool may_cross(Bound const& bound, bool to_right) const {
     auto const& way = ways_.at(bound.way);
-    if (way.type == "virtual" || way.type.empty() || way.subtype == "dashed") return true;
-    if (way.type != "line_thin" && way.type != "line_thick") return false;  // kerbs, borders, fences
-    // "solid_dashed": solid on the left, as the way runs. The line that is nearer counts.
-    bool const on_left = from_left != bound.reversed;
-    if (way.subtype == "solid_dashed") return !on_left;
-    if (way.subtype == "dashed_solid") return on_left;
-    return way.subtype != "solid" && way.subtype != "solid_solid";
+    if (way.change) return *way.change;
+    bool const rightwards = to_right != bound.reversed;  // as the way runs
+    if (way.change_left || way.change_right) return (rightwards ? way.change_right : way.change_left).value_or(false);
+    if (way.type != "line_thin" && way.type != "line_thick") return false;
+    return way.subtype == "dashed" || way.subtype == (rightwards ? "dashed_solid" : "solid_dashed");
   }
 
   /// The lanelets that a regulatory element names in `role`.
@@ -285,28 +373,76 @@ class Lanelet2Reader {
     for (std::size_t i = 0; i < lanelets_.size(); ++i)
       if (std::find(lanelets_[i].rules.begin(), lanelets_[i].rules.end(), *id) != lanelets_[i].rules.end())
         subject.push_back(i);
+    bool const is_read = subtype == "right_of_way" || subtype == "all_way_stop" || subtype == "traffic_light" ||
+                         subtype == "speed_limit" || subtype == "traffic_sign";
+    if (!is_read)
+      return static_cast<void>(++unread_.try_emplace(std::string(subtype), Unread{node, 0}).first->second.count);
+    if (subject.empty())
+      return warn(node, "no lanelet refers to the rule " + std::to_string(*id) + "; it was left out");
     auto const lines = stop_lines(node);
     auto const give = [&](std::vector<std::size_t> const& to, SignalKind kind, std::string const& light = {}) {
       for (auto const i : to)
         lanelets_[i].lanelet.signals.push_back({kind, before_end(lanelets_[i].lanelet, lines), light});
     };
     if (subtype == "right_of_way") {
-      give(named(node, "right_of_way"), SignalKind::priority);
-      give(named(node, "yield"), SignalKind::give_way);
+      auto const first = named(node, "right_of_way"), yielding = named(node, "yield");
+      auto const is_inside = [&](std::size_t i) { return lanelets_[i].lanelet.in_junction; };
+      if (!first.empty() && std::all_of(first.begin(), first.end(), is_inside)) {
+        for (auto const i : first)
+          for (auto const k : yielding) go_before_.emplace(i, k);
+      } else {
+        give(first, SignalKind::priority);
+        give(yielding, SignalKind::give_way);
+      }
     } else if (subtype == "all_way_stop") {
       auto const yielding = named(node, "yield");
       give(yielding.empty() ? subject : yielding, SignalKind::stop);
     } else if (subtype == "traffic_light") {
-      give(subject, SignalKind::light, std::to_string(*id));
+      give(subject, SignalKind::light, light_of(node, *id));
     } else if (subtype == "speed_limit") {
-      auto const limit = speed_of(tag(node, "sign_type"));
-      if (!limit) return warn(node, "its sign_type is no speed, such as \"50 km/h\"; it was left out");
+      auto const limit = sign_speed(node);
+      if (!limit)
+        return warn(node,
+                    "neither its sign nor its sign_type is a speed, such as de274-50 or \"50 km/h\"; it was left out");
       for (auto const i : subject) lanelets_[i].lanelet.speed_limit = limit;
-    } else if (subtype == "traffic_sign") {
-      if (auto const kind = sign_of(node)) give(subject, *kind);
-    } else {
-      context_.report(Severity::info, node, "a rule of the subtype " + std::string(subtype) + " was left out");
+    } else if (auto const kind = sign_of(node)) {
+      give(subject, *kind);
     }
+  }
+
+  /// The name of the light: elements with the same heads are one.
+  [[nodiscard]] std::string light_of(pugi::xml_node node, Id id) {
+    std::vector<Id> heads;
+    for_each_member(node, "refers", [&](pugi::xml_node, Id ref) { heads.push_back(ref); });
+    std::sort(heads.begin(), heads.end());
+    if (heads.empty()) return std::to_string(id);
+    return lights_.try_emplace(std::move(heads), std::to_string(id)).first->second;
+  }
+
+  /// What the elements of right of way between ways through junctions say. Autoware lists there whom a way may ignore,
+  /// often in both directions, and beside lights: only a pair without its reverse, and without lights, is a priority.
+  void set_priorities() {
+    std::size_t both_ways = 0;
+    auto const has_light = [&](std::size_t i) {
+      auto const& signals = lanelets_[i].lanelet.signals;
+      return std::any_of(signals.begin(), signals.end(),
+                         [](LaneletSignal const& signal) { return signal.kind == SignalKind::light; });
+    };
+    for (auto const& [first, second] : go_before_)
+      if (go_before_.contains({second, first}))
+        both_ways += first < second ? 1 : 0;
+      else if (!has_light(first) || !has_light(second))
+        lanelets_[first].lanelet.goes_before.push_back(lanelets_[second].lanelet.id);
+    if (both_ways > 0)
+      context_.report(Severity::warning, 0, "relation",
+                      std::to_string(both_ways) +
+                          " pairs of lanelets go before each other by its right_of_way rules; these say nothing");
+  }
+
+  void report_unread() {
+    for (auto const& [subtype, unread] : unread_)
+      context_.report(Severity::info, unread.node,
+                      "rules of the subtype " + subtype + " are not read: " + std::to_string(unread.count));
   }
 
   /// The places of an element's stop lines: the middles of the ways in the role ref_line.
@@ -320,18 +456,34 @@ class Lanelet2Reader {
     return lines;
   }
 
-  /// What a sign of the element says: its subtype is a country and a number of its catalogue, such as de205.
+  /// Calls `visit(code)` for each sign of an element: its subtype, a country and a number of its catalogue, as de205.
+  template <class Visit>
+  void for_each_sign(pugi::xml_node node, Visit const& visit) {
+    for_each_member(node, "refers", [&](pugi::xml_node, Id ref) {
+      if (auto const way = ways_.find(ref); way != ways_.end()) visit(std::string_view(way->second.subtype));
+    });
+  }
+
   [[nodiscard]] std::optional<SignalKind> sign_of(pugi::xml_node node) {
     std::optional<SignalKind> kind;
-    for_each_member(node, "refers", [&](pugi::xml_node, Id ref) {
-      auto const way = ways_.find(ref);
-      if (way == ways_.end()) return;
-      auto const& word = way->second.subtype;
-      if (word == "de205" || word == "usR1-2") kind = SignalKind::give_way;
-      if (word == "de206" || word == "usR1-1") kind = SignalKind::stop;
-      if (word == "de301" || word == "de306") kind = SignalKind::priority;
+    for_each_sign(node, [&](std::string_view code) {
+      if (code == "de205" || code == "usR1-2") kind = SignalKind::give_way;
+      if (code == "de206" || code == "usR1-1" || code == "usR1-3") kind = SignalKind::stop;
+      if (code == "de301" || code == "de306") kind = SignalKind::priority;
+      if (!kind) warn(node, "its sign " + std::string(code) + " is not known; it was left out");
     });
     return kind;
+  }
+
+  /// The limit of a speed element: that of its sign (German ones), else its sign_type. [m/s]
+  [[nodiscard]] std::optional<double> sign_speed(pugi::xml_node node) {
+    std::optional<double> limit;
+    for_each_sign(node, [&](std::string_view code) {
+      if (code.starts_with("de274-")) limit = speed_of(code.substr(6));
+      if (code.starts_with("de274_1") || code.starts_with("de274.1")) limit = 30.0 / 3.6;  // a zone
+      if (code == "de310") limit = 50.0 / 3.6;
+    });
+    return limit ? limit : speed_of(tag(node, "sign_type"));
   }
 
   /// Who follows whom, and who lies beside whom.
@@ -359,7 +511,16 @@ class Lanelet2Reader {
     }
   }
 
+  /// Rules of a subtype that is not read: the first, and how many.
+  struct Unread {
+    pugi::xml_node node;
+    int count = 0;
+  };
+
   XmlContext context_;
+  std::map<std::string, Unread> unread_;
+  std::map<std::vector<Id>, std::string> lights_;            ///< by their heads
+  std::set<std::pair<std::size_t, std::size_t>> go_before_;  ///< pairs of lanelets, as the elements say
   std::map<Id, Point> nodes_;
   std::map<Id, Way> ways_;
   std::vector<Read> lanelets_;
@@ -368,16 +529,16 @@ class Lanelet2Reader {
 
 }  // namespace detail
 
-CAMBIUM_COLD std::vector<Lanelet> read_lanelet2(std::string_view text, Lanelet2Origin const& origin,
+CAMBIUM_COLD std::vector<Lanelet> read_lanelet2(std::string_view text, std::optional<Lanelet2Origin> const& origin,
                                                 std::string const& file, std::vector<Diagnostic>& diagnostics) {
-  check_parameters(origin, file);
+  if (origin) check_parameters(*origin, file);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   pugi::xml_document xml;
   auto const root = detail::parse_root(xml, text, file, "osm", "give a Lanelet2 map in OSM's XML (.osm)");
   return detail::Lanelet2Reader(text, file, diagnostics).read(root, origin);
 }
 
-CAMBIUM_COLD LaneletMap load_lanelet2(std::string const& path, Lanelet2Origin const& origin,
+CAMBIUM_COLD LaneletMap load_lanelet2(std::string const& path, std::optional<Lanelet2Origin> const& origin,
                                       MapOptions const& options) {
   std::vector<Diagnostic> diagnostics;
   auto lanelets =

@@ -3,204 +3,213 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
+#include <map>
+#include <tuple>
 #include <utility>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/stable_sort.hpp"
 #include "cambium/geometry/line.hpp"
+#include "cambium/map/building/build_map.hpp"
+#include "cambium/map/building/detail/lane_links.hpp"
+#include "cambium/map/building/detail/lane_merges.hpp"
+#include "cambium/map/building/detail/lane_rules.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/building/polyline_roads.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/detail/findings.hpp"
+#include "cambium/map/detail/require_buildable.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
-#include "cambium/map/lanelet/detail/lanelet_groups.hpp"
+#include "cambium/map/lanelet/detail/lanelet_network.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/opendrive/document.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 namespace cambium::map {
 
 namespace detail {
 
-/// Makes roads of groups of lanelets, and a map of these.
+/// Makes a map of lanelets: each becomes a road with one lane along its own middle, so that no lane's path depends on
+/// the shape of another one; links, neighbours, signs and permitted changes are those of the lanelets.
 class LaneletMapMaker {
  public:
   LaneletMapMaker(std::vector<Lanelet> lanelets, std::string const& file, std::vector<Diagnostic>& diagnostics)
-      : findings_{file, diagnostics}, groups_(std::move(lanelets), findings_), builder_(file) {}
+      : findings_{file, diagnostics}, network_(std::move(lanelets), findings_), builder_(file) {}
 
   [[nodiscard]] LaneletMap make(MapOptions const& options) {
-    places_.resize(groups_.lanelets.size());
-    for (auto const& group : groups_.groups) add_group(group);
-    connect();
-    for (std::size_t i = 0; i < places_.size(); ++i)
-      if (places_[i]) finish_lane(i, *places_[i]);
-    for (auto& [name, controls] : lights_) {
-      opendrive::Controller controller;
-      controller.id = name;
-      controller.controls = std::move(controls);
-      builder_.document().controllers.push_back(std::move(controller));
-    }
-    if (builder_.document().roads.empty())
+    for (std::size_t i = 0; i < network_.lanelets.size(); ++i) add_road(i);
+    if (of_road_.empty())
       throw MapError(findings_.file, "no lanelet is left to make a map of" + likely_cause_here(),
                      "give lanelets with a left and a right bound");
+    add_priorities();
+    auto const& document = builder_.document();
+    RequireBuildable::check(document);
+    MapBuild build(document, options, findings_.file, findings_.list);
+    build.add_lanes();
+    parts_ = &build.parts();
+    find_lanes();
+    link();
+    for (std::size_t i = 0; i < lanes_.size(); ++i)
+      if (is_valid(lanes_[i])) put_beside(i);
+    merge();
+    set_speed_limits(document, parts_->lanes);
+    for (std::size_t i = 0; i < lanes_.size(); ++i)
+      if (is_valid(lanes_[i])) add_signals(i);
     LaneletMap result;
-    result.map = builder_.build(options, &findings_.list);
-    std::map<std::pair<std::string, int>, LaneId> lanes;
-    for (auto const& lane : result.map->lanes())
-      lanes.try_emplace({result.map->road(lane.road).name, lane.number}, lane.id);
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      if (!places_[i]) continue;
-      auto const at = lanes.find({places_[i]->road, places_[i]->lane});
-      if (at != lanes.end()) result.lanes.emplace(groups_.lanelets[i].id, at->second);
-    }
+    result.map = build.finish([](Lane const& lane, double s) { return lane.path.pose(s); });
+    for (std::size_t i = 0; i < lanes_.size(); ++i)
+      if (is_valid(lanes_[i])) result.lanes.emplace(network_.lanelets[i].id, lanes_[i]);
     return result;
   }
 
  private:
-  /// The lane that a lanelet has become.
-  struct Place {
-    std::string road;
-    int lane = 0;
-  };
-
   [[nodiscard]] std::string likely_cause_here() const {
     for (auto const& finding : findings_.list)
       if (finding.sentence.find("left out") != std::string::npos) return " (" + to_string(finding) + ")";
     return {};
   }
 
-  void add_group(LaneletGroup const& group) {
-    auto const& of = group.lanelets;
-    if (of.size() == 1) return add_road(single(of.front()), of, group.junction);
+  void add_road(std::size_t i) {
+    auto const& lanelet = network_.lanelets[i];
+    auto const& center = network_.centers[i];
     try {
-      std::vector<std::vector<Point>> borders{evened(groups_.lanelets[of.front()].left)};
-      for (auto const i : of) borders.push_back(evened(groups_.lanelets[i].right));
-      auto plan = lanes_between(borders);
-      check_ends(plan, of);
-      return add_road(std::move(plan), of, group.junction);
-    } catch (MapError const& problem) {
-      groups_.report(Severity::warning, of.front(),
-                     "it and its neighbours cannot be one road (" + std::string(problem.what()) +
-                         "); each becomes a road of its own, and nobody changes lanes between them");
-    }
-    for (auto const i : of) add_road(single(i), {i}, group.junction);
-  }
-
-  /// Throws `MapError` where a lane of the road does not begin and end where its lanelet does: a road ends square to
-  /// its leftmost border.
-  void check_ends(RoadPlan const& plan, std::vector<std::size_t> const& of) const {
-    constexpr double farthest = 0.3;  // [m]
-    MapBuilder trial;
-    RoadPlan copy = plan;
-    auto const id = trial.add_road(std::move(copy));
-    for (std::size_t k = 0; k < of.size(); ++k)
-      for (bool const at_end : {false, true}) {
-        auto const end = at_end ? opendrive::ContactPoint::end : opendrive::ContactPoint::start;
-        auto const is = trial.lane_pose({id, end}, -static_cast<int>(k) - 1);
-        auto const wanted = end_pose(groups_.centers[of[k]], at_end);
-        if ((is.position() - wanted.position()).norm() > farthest)
-          throw MapError("lanelet " + std::to_string(groups_.lanelets[of[k]].id),
-                         at_end ? "it ends aslant" : "it begins aslant");
+      auto const id = std::to_string(lanelet.id);
+      auto plan = lane_along(curve_around(center.points, center.corners, network_.headings[i][0],
+                                          network_.headings[i][1], "lanelet " + id),
+                             center.widths, id);
+      auto& lane = plan.sections.front().right.front();
+      lane.type = lanelet.type;
+      lane.speed_limit = lanelet.speed_limit;
+      if (auto const junction = network_.junction_of[i]; junction != LaneletNetwork::nobody) {
+        auto const [at, is_new] = junctions_.try_emplace(junction);
+        if (is_new) at->second = builder_.add_junction("junction " + plan.id);
+        plan.junction = at->second;
       }
-  }
-
-  [[nodiscard]] RoadPlan single(std::size_t lanelet) {
-    try {
-      auto const& center = groups_.centers[lanelet];
-      return lane_along(center.points, center.widths);
+      (void)builder_.add_road(std::move(plan));
+      if (lanelet.both_directions)
+        for (auto& written : builder_.road(id).lane_sections.front().lanes)
+          if (written.id != 0) written.direction = opendrive::LaneDirection::both;
+      of_road_.push_back(i);
     } catch (MapError const& problem) {
-      groups_.report(Severity::warning, lanelet, std::string(problem.what()) + "; the lanelet was left out");
-      return {};
+      network_.report(Severity::warning, i, std::string(problem.what()) + "; the lanelet was left out");
     }
   }
 
-  void add_road(RoadPlan plan, std::vector<std::size_t> const& of, std::size_t junction) {
-    if (plan.line.empty()) return;  // left out
-    plan.id = std::to_string(groups_.lanelets[of.front()].id);
-    auto& lanes = plan.sections.front().right;
-    plan.sections.front().middle_mark = make_mark("solid", opendrive::LaneChangePermission::none);
-    for (std::size_t k = 0; k < of.size(); ++k) {
-      auto const& lanelet = groups_.lanelets[of[k]];
-      lanes[k].type = lanelet.type;
-      lanes[k].speed_limit = lanelet.speed_limit;
-      if (k + 1 < of.size()) lanes[k].mark = mark_between(lanelet, groups_.lanelets[of[k + 1]]);
-    }
-    if (junction != LaneletGroup::no_junction) {
-      auto const [at, is_new] = junctions_.try_emplace(junction);
-      if (is_new) at->second = builder_.add_junction("junction " + plan.id);
-      plan.junction = at->second;
-    }
-    try {
-      auto const id = builder_.add_road(std::move(plan));
-      for (std::size_t k = 0; k < of.size(); ++k) places_[of[k]] = Place{id, -static_cast<int>(k) - 1};
-    } catch (MapError const& problem) {
-      for (auto const i : of)
-        groups_.report(Severity::warning, i, std::string(problem.what()) + "; the lanelet was left out");
-    }
+  /// Who goes before whom within junctions.
+  void add_priorities() {
+    std::map<std::int64_t, std::size_t> places;
+    for (std::size_t i = 0; i < network_.lanelets.size(); ++i) places.emplace(network_.lanelets[i].id, i);
+    for (auto& junction : builder_.document().junctions)
+      for (auto const& [number, id] : junctions_)
+        for (std::size_t i = 0; id == junction.id && i < network_.lanelets.size(); ++i)
+          for (auto const other : network_.lanelets[i].goes_before)
+            if (auto const at = places.find(other);
+                network_.junction_of[i] == number && at != places.end() && network_.junction_of[at->second] == number)
+              junction.priorities.push_back({std::to_string(network_.lanelets[i].id), std::to_string(other)});
   }
 
-  [[nodiscard]] static opendrive::RoadMark mark_between(Lanelet const& left, Lanelet const& right) {
-    using opendrive::LaneChangePermission;
-    bool const to_right = left.may_change_right, to_left = right.may_change_left;
-    if (to_right && to_left) return make_mark("broken", LaneChangePermission::both);
-    if (to_right) return make_mark("solid broken", LaneChangePermission::decrease);
-    if (to_left) return make_mark("broken solid", LaneChangePermission::increase);
-    return make_mark("solid", LaneChangePermission::none);
+  [[nodiscard]] Lane& lane_of(LaneletNetwork::Way way) {
+    auto& lane = parts_->lanes[index_of(lanes_[way.lanelet])];
+    return way.backwards ? parts_->lanes[index_of(lane.opposite)] : lane;
   }
 
-  /// Connects roads; all links between two of them at once.
-  void connect() {
-    using Ends = std::pair<std::string, std::string>;
-    std::vector<std::pair<Ends, std::vector<opendrive::LaneLink>>> connections;
-    std::map<Ends, std::size_t> known;
-    std::map<Ends, std::size_t> lanelet_of;
-    for (auto const& [from, to] : groups_.links) {
-      if (!places_[from] || !places_[to]) continue;
-      Ends const ends{places_[from]->road, places_[to]->road};
-      auto const [at, is_new] = known.try_emplace(ends, connections.size());
-      if (is_new) connections.push_back({ends, {}});
-      lanelet_of.try_emplace(ends, from);
-      connections[at->second].second.push_back({places_[from]->lane, places_[to]->lane});
-    }
-    for (auto const& [ends, lanes] : connections) {
-      try {
-        builder_.connect({ends.first, opendrive::ContactPoint::end}, {ends.second, opendrive::ContactPoint::start},
-                         lanes);
-      } catch (MapError const& problem) {
-        groups_.report(Severity::warning, lanelet_of[ends],
-                       "what follows it cannot be linked (" + std::string(problem.what()) + "); it was left out");
+  /// Which lanes the lanelets have become, and gives these their borders.
+  void find_lanes() {
+    lanes_.assign(network_.lanelets.size(), none<LaneId>);
+    for (auto& lane : parts_->lanes) {
+      auto const i = of_road_[index_of(lane.road)];
+      if (lane.along_road) lanes_[i] = lane.id;
+      auto left = network_.lanelets[i].left, right = network_.lanelets[i].right;
+      if (!lane.along_road) {
+        std::reverse(left.begin(), left.end());
+        std::reverse(right.begin(), right.end());
+        std::swap(left, right);
       }
+      lane.left = geometry::Line::from_points(left);
+      lane.right = geometry::Line::from_points(right);
     }
   }
 
-  /// Signs, lights and the direction of a lane.
-  void finish_lane(std::size_t i, Place const& place) {
-    auto const& lanelet = groups_.lanelets[i];
-    if (lanelet.signals.empty() && !lanelet.both_directions) return;
-    auto& road = builder_.road(place.road);
-    if (lanelet.both_directions)
-      for (auto& lane : road.lane_sections.front().lanes)
-        if (lane.id == place.lane) lane.direction = opendrive::LaneDirection::both;
-    for (auto const& signal : lanelet.signals) {
-      constexpr char const* types[] = {"301", "205", "206", "1000001"};  // by kind, see `kind_of`
-      opendrive::Signal written;
-      written.id = place.road + "." + std::to_string(-place.lane) + "." + std::to_string(road.signals.size());
-      written.s = std::clamp(road.geometry_length() - signal.before_end, 0.0, road.geometry_length());
-      written.orientation = opendrive::Orientation::along;
-      written.type = types[static_cast<std::size_t>(signal.kind)];
-      written.validities = {{place.lane, place.lane}};
-      if (signal.kind == SignalKind::light) lights_[signal.light].push_back({written.id});
-      road.signals.push_back(std::move(written));
+  void link() {
+    for (auto const& [from, to] : network_.links)
+      if (is_valid(lanes_[from.lanelet]) && is_valid(lanes_[to.lanelet])) join_lanes(lane_of(from), lane_of(to));
+    for (auto& lane : parts_->lanes) {
+      std::sort(lane.successors.begin(), lane.successors.end());
+      std::sort(lane.predecessors.begin(), lane.predecessors.end());
     }
+  }
+
+  /// The stretches of the lane of lanelet `i` beside which its neighbour's bound `line` runs.
+  [[nodiscard]] std::vector<PathStretch> stretches_beside(std::size_t i, bool on_left,
+                                                          std::vector<Point> const& line) const {
+    auto const& lane = parts_->lanes[index_of(lanes_[i])];
+    auto const& center = network_.centers[i];
+    std::vector<PathStretch> stretches;
+    for (auto const& [first, last] : places_beside(center, on_left, line)) {
+      auto const place = [&](std::size_t k) {
+        return std::clamp(lane.path.project(center.points[k]).s, 0.0, lane.length());
+      };
+      stretches.push_back(
+          {first == 0 ? 0.0 : place(first), last + 1 == center.points.size() ? lane.length() : place(last)});
+    }
+    return stretches;
+  }
+
+  /// Enters the right neighbour of a lanelet. Lanes for both directions have none.
+  void put_beside(std::size_t i) {
+    auto const k = network_.right_of[i];
+    if (k == LaneletNetwork::nobody || !is_valid(lanes_[k])) return;
+    auto const &left = network_.lanelets[i], &right = network_.lanelets[k];
+    auto &own = lane_of({i}), &other = lane_of({k});
+    if (!own.drivable() || !other.drivable() || is_valid(own.opposite) || is_valid(other.opposite)) return;
+    own.right_neighbor = other.id;
+    other.left_neighbor = own.id;
+    if (left.may_change_right) own.right_changes = stretches_beside(i, false, right.left);
+    if (right.may_change_left) other.left_changes = stretches_beside(k, true, left.right);
+  }
+
+  /// A lane that ends while its neighbour goes on swings over onto that one; from the lanes that go on outwards, for
+  /// one may merge into another that merges itself.
+  void merge() {
+    for (bool found = true; found;) {
+      found = false;
+      for (auto& lane : parts_->lanes)
+        for (auto const side : {lane.left_neighbor, lane.right_neighbor}) {
+          if (!is_valid(side) || !lane.successors.empty()) continue;
+          auto const& beside = parts_->lanes[index_of(side)];
+          if (beside.successors.empty()) continue;
+          swing_over(lane, beside, parts_->options.merge_length);
+          lane.successors = beside.successors;
+          for (auto const next : lane.successors) parts_->lanes[index_of(next)].predecessors.push_back(lane.id);
+          found = true;
+        }
+    }
+  }
+
+  void add_signals(std::size_t i) {
+    auto& lane = lane_of({i});
+    for (auto const& signal : network_.lanelets[i].signals) {
+      LaneSignal written{std::clamp(lane.length() - signal.before_end, 0.0, lane.length()), signal.kind};
+      if (signal.kind == SignalKind::light) {
+        auto const [at, is_new] = lights_.try_emplace(signal.light, static_cast<LightId>(parts_->lights.size()));
+        if (is_new) parts_->lights.push_back({at->second, signal.light});
+        written.light = at->second;
+      }
+      lane.signals.push_back(written);
+    }
+    cambium::detail::stable_sort(lane.signals, [](LaneSignal const& s) { return std::tuple(s.s, s.kind, s.light); });
   }
 
   Findings findings_;
-  LaneletGroups groups_;
+  LaneletNetwork network_;
   MapBuilder builder_;
-  std::vector<std::optional<Place>> places_;      ///< of each lanelet
-  std::map<std::size_t, std::string> junctions_;  ///< by `LaneletGroup::junction`
-  std::map<std::string, std::vector<opendrive::Control>> lights_;
+  Map::Parts* parts_ = nullptr;
+  std::vector<std::size_t> of_road_;              ///< the lanelet of each road
+  std::vector<LaneId> lanes_;                     ///< of each lanelet; none: left out
+  std::map<std::size_t, std::string> junctions_;  ///< by `LaneletNetwork::junction_of`
+  std::map<std::string, LightId> lights_;
 };
 
 }  // namespace detail

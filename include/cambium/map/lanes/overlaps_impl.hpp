@@ -65,6 +65,7 @@ class OverlapFinder {
 
   /// Finds the lanes that each lane is linked with, and those beside them.
   void find_related() {
+    find_cross_sections();
     ahead_.assign(lanes_.size(), {});
     behind_ = ahead_;
     joints_.assign(lanes_.size(), {});
@@ -74,9 +75,7 @@ class OverlapFinder {
         add_linked(lanes_[i], at_end ? &Lane::successors : &Lane::predecessors, 0.0, linked);
         for (auto const& link : linked) {
           (at_end ? ahead_ : behind_)[i].push_back(link.lane);
-          std::vector<LaneId> beside;
-          add_cross_section(index_of(link.lane), beside);
-          for (auto const id : beside) {
+          for (auto const id : cross_sections_[cross_section_of_[index_of(link.lane)]]) {
             bool const same_way = lanes_[index_of(id)].along_road == lanes_[index_of(link.lane)].along_road;
             joints_[i].push_back({id, at_end, at_end != same_way, link.between});
           }
@@ -84,14 +83,32 @@ class OverlapFinder {
       }
   }
 
-  /// The lanes of the same section of the road, oncoming ones too; they are consecutive in `lanes_`.
-  void add_cross_section(std::size_t lane, std::vector<LaneId>& beside) const {
-    auto const is_same = [&](std::size_t i) {
-      return lanes_[i].road == lanes_[lane].road && lanes_[i].section == lanes_[lane].section;
-    };
-    auto first = lane;
-    while (first > 0 && is_same(first - 1)) --first;
-    for (; first < lanes_.size() && is_same(first); ++first) beside.push_back(lanes_[first].id);
+  /// The lanes of one section of a road, which are consecutive in `lanes_`, oncoming ones too; and their neighbours, of
+  /// whatever road.
+  void find_cross_sections() {
+    std::vector<std::size_t> const unknown(lanes_.size(), lanes_.size());
+    cross_section_of_ = unknown;
+    cross_sections_.clear();
+    for (std::size_t first = 0; first < lanes_.size(); ++first) {
+      if (cross_section_of_[first] != lanes_.size()) continue;
+      auto& members = cross_sections_.emplace_back();
+      auto const add = [&](std::size_t i) {
+        if (cross_section_of_[i] != lanes_.size()) return;
+        cross_section_of_[i] = cross_sections_.size() - 1;
+        members.push_back(lanes_[i].id);
+      };
+      add(first);
+      for (std::size_t k = 0; k < members.size(); ++k) {
+        auto const at = index_of(members[k]);
+        auto const is_same = [&](std::size_t i) {
+          return lanes_[i].road == lanes_[at].road && lanes_[i].section == lanes_[at].section;
+        };
+        for (auto i = at; i + 1 < lanes_.size() && is_same(i + 1); ++i) add(i + 1);
+        for (auto i = at; i > 0 && is_same(i - 1); --i) add(i - 1);
+        for (auto const side : {lanes_[at].left_neighbor, lanes_[at].right_neighbor})
+          if (is_valid(side)) add(index_of(side));
+      }
+    }
   }
 
   /// The lanes behind a lane's end (or before its begin), and those behind them while they are too short to come
@@ -134,7 +151,9 @@ class OverlapFinder {
   /// Lanes of one road are side by side, one after the other, or the same where their stations are about the same.
   [[nodiscard]] bool are_beside(LaneChord const& a, LaneChord const& b) const {
     auto const &la = lanes_[a.lane], &lb = lanes_[b.lane];
-    return la.road == lb.road && la.merges_into != lb.id && lb.merges_into != la.id && a.on_road.gap(b.on_road) < 10.0;
+    if (la.merges_into == lb.id || lb.merges_into == la.id) return false;
+    if (la.road == lb.road) return a.on_road.gap(b.on_road) < 10.0;
+    return cross_section_of_[a.lane] == cross_section_of_[b.lane];
   }
 
   void find_contacts() {
@@ -278,6 +297,8 @@ class OverlapFinder {
   LaneElevation const& elevation_;
   double clearance_;
   OverlapEnds ends_;
+  std::vector<std::size_t> cross_section_of_;        ///< each lane
+  std::vector<std::vector<LaneId>> cross_sections_;  ///< lanes side by side
   std::vector<std::vector<LaneId>> ahead_, behind_;  ///< by lane
   std::vector<std::vector<Joint>> joints_;           ///< by lane
   std::vector<Contact> contacts_;                    ///< of the present lane with others

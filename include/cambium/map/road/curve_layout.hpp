@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +49,14 @@ struct CurvePiece {
 [[nodiscard]] std::vector<Geometry> curve_through(std::span<geometry::Point const> points,
                                                   std::span<double const> headings = {},
                                                   std::string const& where = "polyline");
+
+/// A curve from `points` to `points`, each left towards the corner behind it and reached from there: parabolas, which
+/// turn no more than the polyline through points and corners; without a kink where each point lies between its corners.
+/// `begin` and `end`: other directions at the curve's ends [rad]. Throws `MapError` as `curve_through`, and where there
+/// is not one corner less than points, or one lies within a micrometre of its points; `where` names the line there.
+[[nodiscard]] std::vector<Geometry> curve_around(std::span<geometry::Point const> points,
+                                                 std::span<geometry::Point const> corners, std::optional<double> begin,
+                                                 std::optional<double> end, std::string const& where = "polyline");
 
 }  // namespace cambium::map
 

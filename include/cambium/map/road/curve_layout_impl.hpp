@@ -226,4 +226,30 @@ CAMBIUM_COLD std::vector<Geometry> curve_through(std::span<geometry::Point const
   return geometries;
 }
 
+CAMBIUM_COLD std::vector<Geometry> curve_around(std::span<geometry::Point const> points,
+                                                std::span<geometry::Point const> corners, std::optional<double> begin,
+                                                std::optional<double> end, std::string const& where) {
+  detail::check_points(points, {}, where);
+  if (corners.size() + 1 != points.size())
+    throw MapError(
+        where,
+        "it has " + std::to_string(points.size()) + " points, but " + std::to_string(corners.size()) + " corners",
+        "give a corner between each two points");
+  auto const pose = [](geometry::Point const& at, geometry::Point const& way, std::optional<double> heading) {
+    return geometry::Pose{at.x(), at.y(), detail::round_angle(heading.value_or(std::atan2(way.y(), way.x())))};
+  };
+  std::vector<Geometry> geometries;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    auto const leaving = corners[i] - points[i], arriving = points[i + 1] - corners[i];
+    if (!(leaving.norm() > 1e-6 && arriving.norm() > 1e-6))
+      throw MapError(where, "corner " + std::to_string(i) + " is no corner between its points",
+                     "move it away from them");
+    geometries.push_back(detail::make_cubic(pose(points[i], leaving, i == 0 ? begin : std::nullopt),
+                                            pose(points[i + 1], arriving, i + 1 == corners.size() ? end : std::nullopt),
+                                            2.0 / 3.0 * leaving.norm(), 2.0 / 3.0 * arriving.norm(), where));
+  }
+  detail::number_stations(geometries);
+  return geometries;
+}
+
 }  // namespace cambium::map

@@ -1,17 +1,83 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <set>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/line.hpp"
 #include "cambium/map/building/detail/lane_geometry.hpp"
 #include "cambium/map/building/detail/section_sampler.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::map::detail {
+
+/// Lets a lane's path swing over onto that of its neighbour `onto`, of whatever road, and go on with it to its end:
+/// from a little before where the lane narrows, or over the last `longest` [m] of one that does not.
+inline void swing_over(Lane& lane, Lane const& onto, double longest) {
+  constexpr double shortest = 30.0, spacing = 1.0;  // [m]
+  double const length = lane.length();
+  auto const width = [&lane](std::size_t i) { return lane.widths[i].left + lane.widths[i].right; };
+  double widest = 0.0;
+  for (std::size_t i = 0; i < lane.widths.size(); ++i) widest = std::max(widest, width(i));
+  auto narrow = lane.widths.size() - 1;
+  if (width(narrow) < 0.5 * widest)
+    while (narrow > 0 && width(narrow) < 0.95 * widest) --narrow;
+  double const taper = narrow + 1 < lane.widths.size() ? 1.3 * (length - lane.path.segments()[narrow].s) : 0.0;
+  double const swing = taper == 0.0 ? longest : std::clamp(taper, shortest, std::max(shortest, longest));
+  double const from = std::max(0.0, length - swing);
+
+  auto const across = [&](double s) {  // to the neighbour's path, left positive [m]
+    auto const at = lane.path.pose(s);
+    auto const foot = onto.path.pose(onto.path.project(at.position()).s);
+    auto const [sin, cos] = geometry::sin_cos(at.heading);
+    return (foot.y - at.y) * cos - (foot.x - at.x) * sin;
+  };
+  std::vector<double> places;
+  for (auto const& segment : lane.path.segments())
+    if (segment.s < from - 1e-3) places.push_back(segment.s);
+  auto const steps = std::max(1, static_cast<int>(std::ceil((length - from) / spacing)));
+  for (int k = 0; k <= steps; ++k) places.push_back(from + (length - from) * k / steps);
+  std::vector<geometry::LineSample> path;
+  std::vector<SideWidths> widths;
+  std::vector<double> stations;
+  for (double const s : places) {
+    auto const at = lane.path.pose(s);
+    double lateral = 0.0, slope = 0.0;
+    if (s > from) {
+      constexpr double h = 0.5;  // [m]
+      double const before = std::max(0.0, s - h), behind = std::min(length, s + h), t = across(s);
+      Smoothstep const w((s - from) / (length - from));
+      lateral = w.value * t;
+      slope = w.value * (across(behind) - across(before)) / (behind - before) + w.slope / (length - from) * t;
+    }
+    auto const [sin, cos] = geometry::sin_cos(at.heading);
+    path.push_back({at.x - sin * lateral, at.y + cos * lateral,
+                    at.heading + std::atan2(slope, 1.0 - lane.path.curvature(s) * lateral)});
+    auto const w = lane.widths_at(s);
+    widths.push_back({w.left - lateral, w.right + lateral});
+    stations.push_back(lane.station_at(s));
+  }
+  auto const samples = onto.path.samples();
+  double const joined = onto.path.project(geometry::Point{path.back().x, path.back().y}).s;
+  for (std::size_t i = 1; i < samples.size(); ++i) {  // to where that one ends, which may be ahead
+    double const s = i < onto.path.segments().size() ? onto.path.segments()[i].s : onto.length();
+    if (s < joined + 0.01) continue;
+    path.push_back(samples[i]);
+    widths.push_back(widths.back());
+    stations.push_back(stations.back() + 1e-6);
+  }
+  lane.merges_into = onto.id;
+  lane.merge_begin = from;
+  lane.path = geometry::Line::from_samples(path);
+  lane.widths = std::move(widths);
+  lane.stations = std::move(stations);
+}
 
 /// Lets lanes that end while their neighbour goes on merge into that one; not those in `dead_ends`. A lane that is
 /// linked to a neighbour's successor beside its own end ends, too.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
@@ -82,46 +84,89 @@ struct Rail {
   return nullptr;
 }
 
-/// The middle between the bounds, with half of the width at each point.
+/// Places on the middle between the bounds: the begin, the middle of each straight piece, the end; with the direction
+/// of the way there, and what lies beside it. A curve that has these directions there turns no more than the pieces do.
 struct LaneletCenter {
-  std::vector<Point> points;
+  std::vector<Point> points, left, right;  ///< `left` and `right`: places on the bounds
+  std::vector<double> headings;            ///< [rad]
+  std::vector<Point> corners;              ///< between each two points, where the way turns
   std::vector<SideWidths> widths;
 };
 
-/// Points of equal shares of both bounds face each other. Precondition: `fault_of_bounds` finds none.
+/// Points of equal shares of both bounds face each other: so the middle goes forwards wherever the directions of the
+/// bounds there are less than half a turn apart. Precondition: `fault_of_bounds` finds none.
 [[nodiscard]] inline LaneletCenter center_of(Lanelet const& lanelet) {
-  constexpr double apart = 0.25;  // [m] of points at least
+  constexpr double shortest = 0.25;  // [m] of a straight piece
   Rail const left(evened(lanelet.left)), right(evened(lanelet.right));
   std::vector<double> shares{0.0, 1.0};
   for (auto const* rail : {&left, &right})
     for (double const s : rail->s) shares.push_back(s / rail->length());
   std::sort(shares.begin(), shares.end());
+  std::vector<double> corners;
+  auto const middle = [&](double u) { return 0.5 * (left.at(u) + right.at(u)); };
+  for (double const u : shares)
+    if (corners.empty() || (middle(u) - middle(corners.back())).norm() >= shortest) corners.push_back(u);
+  if (corners.size() > 1 && (middle(1.0) - middle(corners.back())).norm() < shortest) corners.pop_back();
+  if (middle(1.0) != middle(corners.back())) corners.push_back(1.0);
   LaneletCenter center;
-  auto const add = [&](double u) {
-    Point const l = left.at(u), r = right.at(u);
-    center.points.push_back(0.5 * (l + r));
-    double const half = 0.5 * (l - r).norm();
-    center.widths.push_back({half, half});
-  };
-  for (double const u : shares) {
-    Point const p = 0.5 * (left.at(u) + right.at(u));
-    if (center.points.empty() || (p - center.points.back()).norm() >= apart) add(u);
+  for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+    Point const begin = middle(corners[i]), end = middle(corners[i + 1]), way = (end - begin).normalized();
+    auto const add = [&](double u, Point const& p) {
+      center.points.push_back(p);
+      center.headings.push_back(std::atan2(way.y(), way.x()));
+      center.left.push_back(left.at(u));
+      center.right.push_back(right.at(u));
+      Point const across = center.left.back() - center.right.back();
+      double const half = 0.5 * std::max(0.0, across.y() * way.x() - across.x() * way.y());
+      center.widths.push_back({half, half});
+    };
+    if (i == 0) add(0.0, begin);
+    center.corners.push_back(i == 0 ? 0.75 * begin + 0.25 * end : begin);
+    add(0.5 * (corners[i] + corners[i + 1]), 0.5 * (begin + end));
+    if (i + 2 < corners.size()) continue;
+    center.corners.push_back(0.25 * begin + 0.75 * end);
+    add(1.0, end);
   }
-  Point const end = 0.5 * (left.at(1.0) + right.at(1.0));
-  if (center.points.size() > 1 && (end - center.points.back()).norm() < apart) {
-    center.points.pop_back();
-    center.widths.pop_back();
-  }
-  if (end != center.points.back()) add(1.0);
   return center;
 }
 
-/// Where a lanelet begins or ends: the middle between its bounds, along the way.
-[[nodiscard]] inline geometry::Pose end_pose(LaneletCenter const& center, bool at_end) {
+/// The direction of a way's first or last 1.5 m, of length 1.
+[[nodiscard]] inline Point end_way(LaneletCenter const& center, bool at_end) {
+  constexpr double far = 1.5;  // [m]
   auto const& p = center.points;
-  Point const way = at_end ? p.back() - p[p.size() - 2] : p[1] - p[0];
-  Point const& at = at_end ? p.back() : p.front();
-  return {at.x(), at.y(), std::atan2(way.y(), way.x())};
+  auto const n = p.size();
+  std::size_t k = 1;
+  while (k + 1 < n && (at_end ? p[n - 1] - p[n - 1 - k] : p[k] - p[0]).norm() < far) ++k;
+  return (at_end ? p[n - 1] - p[n - 1 - k] : p[k] - p[0]).normalized();
+}
+
+[[nodiscard]] inline double distance_to(std::span<Point const> line, Point const& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    Point const way = line[i + 1] - line[i];
+    double const length = way.squaredNorm();
+    double const u = length > 0.0 ? std::clamp((p - line[i]).dot(way) / length, 0.0, 1.0) : 0.0;
+    nearest = std::min(nearest, (p - (line[i] + u * way)).norm());
+  }
+  return nearest;
+}
+
+/// From which point of a lanelet's middle to which its left (else its right) bound runs along `line`.
+[[nodiscard]] inline std::vector<std::pair<std::size_t, std::size_t>> places_beside(LaneletCenter const& center,
+                                                                                    bool on_left,
+                                                                                    std::span<Point const> line) {
+  constexpr double farthest = 1.0;  // [m]
+  auto const& bound = on_left ? center.left : center.right;
+  std::vector<std::pair<std::size_t, std::size_t>> stretches;
+  for (std::size_t i = 0; i < bound.size(); ++i) {
+    if (distance_to(line, bound[i]) > farthest) continue;
+    if (!stretches.empty() && stretches.back().second + 1 == i)
+      stretches.back().second = i;
+    else
+      stretches.emplace_back(i, i);
+  }
+  std::erase_if(stretches, [](auto const& stretch) { return stretch.first == stretch.second; });
+  return stretches;
 }
 
 /// Whether two ways cross, away from their ends, at an angle of 20 degrees or more.
