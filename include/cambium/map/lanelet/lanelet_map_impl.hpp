@@ -157,13 +157,17 @@ class LaneletMapMaker {
     return stretches;
   }
 
-  /// Enters the right neighbour of a lanelet. Lanes for both directions have none.
+  /// Enters the right neighbour of a lanelet.
   void put_beside(std::size_t i) {
     auto const k = network_.right_of[i];
     if (k == LaneletNetwork::nobody || !is_valid(lanes_[k])) return;
     auto const &left = network_.lanelets[i], &right = network_.lanelets[k];
     auto &own = lane_of({i}), &other = lane_of({k});
-    if (!own.drivable() || !other.drivable() || is_valid(own.opposite) || is_valid(other.opposite)) return;
+    if (!own.drivable() || !other.drivable()) return;
+    if (is_valid(own.opposite) || is_valid(other.opposite))
+      return network_.report(Severity::info, i,
+                             "it or its neighbour " + std::to_string(right.id) +
+                                 " is driven both ways; nobody changes lanes between them");
     own.right_neighbor = other.id;
     other.left_neighbor = own.id;
     if (left.may_change_right) own.right_changes = stretches_beside(i, false, right.left);

@@ -169,6 +169,14 @@ struct LaneletCenter {
   return stretches;
 }
 
+/// Whether the left (else right) bound of a lanelet runs along `line` for at least half of its length.
+[[nodiscard]] inline bool runs_along(LaneletCenter const& center, bool on_left, std::span<Point const> line) {
+  Rail const way(center.points);
+  double beside = 0.0;
+  for (auto const& [first, last] : places_beside(center, on_left, line)) beside += way.s[last] - way.s[first];
+  return beside >= 0.5 * way.length();
+}
+
 /// Whether two ways cross, away from their ends, at an angle of 20 degrees or more.
 [[nodiscard]] inline bool cross_each_other(std::vector<Point> const& a, std::vector<Point> const& b) {
   constexpr double near_end = 0.5, sine = 0.34;  // [m], of 20 degrees

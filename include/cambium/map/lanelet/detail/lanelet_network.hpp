@@ -200,8 +200,8 @@ class LaneletNetwork {
       if (left == right || right_of[left] == right) return;
       if (right_of[left] != nobody || has_left[right])
         return report(Severity::warning, by, "its neighbour " + std::to_string(id) + " has another one on that side");
-      if (places_beside(centers[left], false, lanelets[right].left).empty() ||
-          places_beside(centers[right], true, lanelets[left].right).empty())
+      if (!runs_along(centers[left], false, lanelets[right].left) &&
+          !runs_along(centers[right], true, lanelets[left].right))
         return report(Severity::warning, by,
                       "its neighbour " + std::to_string(id) + " does not lie beside it; they were kept apart");
       right_of[left] = right;
