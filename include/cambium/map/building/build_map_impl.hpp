@@ -13,6 +13,7 @@
 #include "cambium/map/building/detail/lane_links.hpp"
 #include "cambium/map/building/detail/lane_merges.hpp"
 #include "cambium/map/building/detail/lane_rules.hpp"
+#include "cambium/map/building/detail/lane_signals.hpp"
 #include "cambium/map/building/detail/link_check.hpp"
 #include "cambium/map/building/detail/missing_links.hpp"
 #include "cambium/map/building/detail/road_links.hpp"
@@ -123,7 +124,7 @@ class MapBuild {
   void set_rules() {
     set_speed_limits(document_, parts_.lanes);
     set_lane_changes(document_, parts_.lanes);
-    parts_.lights = LaneSignals(document_, parts_.lanes).set();
+    parts_.lights = LaneSignals(document_, parts_.lanes, findings_).set();
   }
 
   /// Junctions and overlaps: all that a world needs.

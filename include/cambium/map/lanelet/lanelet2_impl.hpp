@@ -19,6 +19,7 @@
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
 #include "cambium/map/lanelet/detail/utm.hpp"
 #include "cambium/map/lanelet/lanelet2.hpp"
+#include "cambium/map/lanes/signal_codes.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 
 namespace cambium::map {
@@ -467,10 +468,11 @@ class Lanelet2Reader {
   [[nodiscard]] std::optional<SignalKind> sign_of(pugi::xml_node node) {
     std::optional<SignalKind> kind;
     for_each_sign(node, [&](std::string_view code) {
-      if (code == "de205" || code == "usR1-2") kind = SignalKind::give_way;
-      if (code == "de206" || code == "usR1-1" || code == "usR1-3") kind = SignalKind::stop;
-      if (code == "de301" || code == "de306") kind = SignalKind::priority;
-      if (!kind) warn(node, "its sign " + std::string(code) + " is not known; it was left out");
+      auto const* const known = find_signal_code(code.substr(0, 2), code.size() > 2 ? code.substr(2) : code, "");
+      if (known == nullptr) return warn(node, "its sign " + std::string(code) + " is not known; it was left out");
+      if (known->meaning == SignalMeaning::give_way) kind = SignalKind::give_way;
+      if (known->meaning == SignalMeaning::stop) kind = SignalKind::stop;
+      if (known->meaning == SignalMeaning::priority) kind = SignalKind::priority;
     });
     return kind;
   }

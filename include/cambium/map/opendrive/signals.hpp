@@ -28,6 +28,7 @@ struct Signal {
   std::string type;                  ///< number in a catalogue, such as "206"; empty for a reference
   std::vector<Validity> validities;  ///< none: all lanes
   Rest rest;                         ///< position, size, text, country, dependencies, ...
+  FileLine line{};
 
   friend bool operator==(Signal const&, Signal const&) = default;
 };

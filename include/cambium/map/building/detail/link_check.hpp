@@ -29,6 +29,7 @@ class LinkCheck {
       check_lane_links(r);
       check_short_sections(r);
     }
+    check_connections();
   }
 
   /// Gaps and kinks between lanes that were joined.
@@ -73,12 +74,12 @@ class LinkCheck {
                       "; lanes are joined by what either side says");
   }
 
-  /// Lanes that name a lane which names others at that place.
+  /// Lanes that name a lane which names others at that place, or none.
   void check_lane_links(std::size_t r) {
     auto const& road = links_.document().roads[r];
-    int count = 0;
-    std::string first;
-    int line = 0;
+    int count = 0, one_sided = 0;
+    std::string first, first_one_sided;
+    int line = 0, line_one_sided = 0;
     auto const check = [&](SectionEnd const& at, opendrive::LaneElement const& lane, std::vector<int> const& numbers) {
       auto const others = links_.beyond(at);
       if (others.size() != 1 || numbers.empty()) return;
@@ -90,12 +91,13 @@ class LinkCheck {
         auto const* named = section.find(number);
         if (named == nullptr || lane.id == 0) continue;
         auto const& back = other.end == ContactPoint::end ? named->successors : named->predecessors;
-        if (back.empty() || std::find(back.begin(), back.end(), lane.id) != back.end()) continue;
-        if (count++ > 0) continue;
-        line = lane.line;
-        first = "lane " + std::to_string(lane.id) + " of section " + std::to_string(at.section) + " names lane " +
-                std::to_string(number) + " of road " + links_.document().roads[other.road].id + ", which names lane " +
-                std::to_string(back.front());
+        if (std::find(back.begin(), back.end(), lane.id) != back.end()) continue;
+        if ((back.empty() ? one_sided : count)++ > 0) continue;
+        (back.empty() ? line_one_sided : line) = lane.line;
+        (back.empty() ? first_one_sided : first) =
+            "lane " + std::to_string(lane.id) + " of section " + std::to_string(at.section) + " names lane " +
+            std::to_string(number) + " of road " + links_.document().roads[other.road].id + ", which names " +
+            (back.empty() ? "none back" : "lane " + std::to_string(back.front()));
       }
     };
     for (std::size_t k = 0; k < road.lane_sections.size(); ++k)
@@ -106,6 +108,20 @@ class LinkCheck {
     if (count > 0)
       findings_.add(Severity::info, line, "link", "road " + road.id,
                     first + others_text(count) + "; the lanes were joined");
+    if (one_sided > 0)
+      findings_.add(Severity::info, line_one_sided, "link", "road " + road.id,
+                    first_one_sided + others_text(one_sided) + "; the lanes were joined");
+  }
+
+  /// Connections that name no lanes: their lanes' own links count, or where their ends meet.
+  void check_connections() {
+    for (auto const& junction : links_.document().junctions)
+      for (auto const& connection : junction.connections)
+        if (connection.lane_links.empty() && links_.find(connection.incoming_road) &&
+            links_.find(connection.entered_road()))
+          findings_.add(Severity::info, connection.line, "connection",
+                        "junction " + junction.id + ", connection " + connection.id,
+                        "it names no lanes; they are joined by their own links, or where they meet");
   }
 
   void check_short_sections(std::size_t r) {

@@ -23,7 +23,8 @@ class MissingLinks {
   MissingLinks(RoadLinks const& links, std::vector<Lane>& lanes, Findings& findings)
       : links_(links), lanes_(lanes), findings_(findings) {}
 
-  /// Reports the possible links, and enters them when asked to. The lanes that were left as dead ends.
+  /// Reports the possible links, and enters them when asked to, or where the file links their roads. The lanes that were
+  /// left as dead ends.
   [[nodiscard]] std::set<LaneId> find(bool infer) {
     std::set<LaneId> dead_ends;
     NetworkTolerances const tolerances;
@@ -34,10 +35,12 @@ class MissingLinks {
     for (auto const& finding : check.find_possible_links(can_follow)) {
       auto& from = lanes_[index_of(finding.lane)];
       auto& to = lanes_[index_of(finding.other)];
-      report(infer ? Severity::info : Severity::warning, from,
+      bool const joins = infer || leads(exit_of(from), entry_of(to)) || leads(entry_of(to), exit_of(from)) ||
+                         is_connected(exit_of(from), entry_of(to)) || is_connected(entry_of(to), exit_of(from));
+      report(joins ? Severity::info : Severity::warning, from,
              "it has no successor, but " + describe(to) + " begins where it ends; " +
-                 (infer ? "the two were joined" : "is the link missing? It was left as a dead end"));
-      if (infer)
+                 (joins ? "the two were joined" : "is the link missing? It was left as a dead end"));
+      if (joins)
         join_lanes(from, to);
       else
         dead_ends.insert(from.id);
@@ -64,6 +67,25 @@ class MissingLinks {
   }
   [[nodiscard]] static SectionEnd entry_of(Lane const& lane) {
     return {index_of(lane.road), lane.section, lane.along_road ? ContactPoint::start : ContactPoint::end};
+  }
+
+  /// Whether the road's link at one section's end leads to the other.
+  [[nodiscard]] bool leads(SectionEnd const& at, SectionEnd const& other) const {
+    auto const beyond = links_.beyond(at);
+    return std::find(beyond.begin(), beyond.end(), other) != beyond.end();
+  }
+
+  /// Whether a junction connects the incoming road of `at` with the road of `other`, of which it names no lanes.
+  [[nodiscard]] bool is_connected(SectionEnd const& at, SectionEnd const& other) const {
+    auto const& roads = links_.document().roads;
+    auto const& link = links_.link_at(at.road, at.end);
+    if (!links_.is_road_end(at) || !link || link->element_type != opendrive::ElementType::junction) return false;
+    for (auto const& junction : links_.document().junctions)
+      for (auto const& connection : junction.connections)
+        if (junction.id == link->id && connection.lane_links.empty() && connection.incoming_road == roads[at.road].id &&
+            connection.entered_road() == roads[other.road].id)
+          return true;
+    return false;
   }
 
   /// Whether what is linked to the section's end `at`, if anything is, can be `other`.

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/core/stable_sort.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/map/detail/findings.hpp"
+#include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/lanes/signal_codes.hpp"
+#include "cambium/map/opendrive/document.hpp"
+
+namespace cambium::map::detail {
+
+/// Gives lanes the signs and lights that the file has for them, see `SignalKind`, and lists the lights. What it cannot
+/// give to a lane, or does not know, becomes a finding.
+class LaneSignals {
+ public:
+  LaneSignals(OpenDriveDocument const& document, std::span<Lane> lanes, Findings& findings)
+      : document_(document), lanes_(lanes), findings_(findings) {
+    for (auto const& controller : document.controllers)
+      for (auto const& control : controller.controls) controllers_.emplace(control.signal_id, controller.id);
+    for (std::size_t r = 0; r < document.roads.size(); ++r)
+      for (auto const& signal : document.roads[r].signals) {
+        signals_.emplace(signal.id, &signal);
+        roads_.emplace(&signal, r);
+      }
+    of_road_.resize(document.roads.size());
+    for (auto const& lane : lanes) of_road_[index_of(lane.road)].push_back(lane.id);
+  }
+
+  [[nodiscard]] std::vector<TrafficLight> set() {
+    for (std::size_t r = 0; r < document_.roads.size(); ++r) {
+      auto const& road = document_.roads[r];
+      for (auto const& signal : road.signals) add(r, signal, signal);
+      for (auto const& reference : road.signal_references)
+        if (auto const signal = signals_.find(reference.id); signal != signals_.end())
+          add(r, *signal->second, reference);
+        else
+          report(reference, r, "no road has the signal that it refers to; it was left out");
+    }
+    for (auto& lane : lanes_) {
+      cambium::detail::stable_sort(lane.signals, [](LaneSignal const& s) { return std::tuple(s.s, s.kind, s.light); });
+      lane.signals.erase(std::unique(lane.signals.begin(), lane.signals.end()), lane.signals.end());
+    }
+    report_rest();
+    return std::move(lights_);
+  }
+
+ private:
+  using Signal = opendrive::Signal;
+
+  [[nodiscard]] static std::string_view attribute(Signal const& signal, std::string_view name) {
+    auto const* const found = signal.rest.find_attribute(name);
+    return found == nullptr ? std::string_view() : std::string_view(found->value);
+  }
+
+  /// `place` says where it counts: the signal itself, or a reference to it.
+  void add(std::size_t road, Signal const& signal, Signal const& place) {
+    auto const* const code = find_signal_code(attribute(signal, "country"), signal.type, attribute(signal, "subtype"));
+    if (code == nullptr) {
+      if (&signal == &place && !signal.type.empty() && signal.type != "-1" && signal.type != "none")
+        count("signals of type " + signal.type + " of country \"" + std::string(attribute(signal, "country")) +
+                  "\" are not known",
+              signal);
+      return;
+    }
+    std::optional<SignalKind> kind;
+    if (code->meaning == SignalMeaning::priority) kind = SignalKind::priority;
+    if (code->meaning == SignalMeaning::give_way) kind = SignalKind::give_way;
+    if (code->meaning == SignalMeaning::stop) kind = SignalKind::stop;
+    if (code->meaning == SignalMeaning::light || code->meaning == SignalMeaning::bulb) kind = SignalKind::light;
+    if (!kind) {
+      if (code->meaning == SignalMeaning::speed_limit && &signal == &place)
+        count("signs that limit the speed do not count; the limits of roads and lanes do", signal);
+      return;
+    }
+    auto& is_given = given_[&signal];
+    bool const is_place_only =
+        !place.validities.empty() && std::all_of(place.validities.begin(), place.validities.end(),
+                                                 [](auto const& v) { return v.from_lane == 0 && v.to_lane == 0; });
+    if (is_place_only) return;
+    bool against_way = true, found = false;
+    for (auto const id : of_road_[road]) {
+      auto& lane = lanes_[index_of(id)];
+      auto const way = lane.along_road ? opendrive::Orientation::along : opendrive::Orientation::against;
+      bool const fits = place.orientation == opendrive::Orientation::both || place.orientation == way;
+      if (!lane.drivable() || !holds(lane, place) || !(place.validities.empty() ? fits : is_valid_for(lane, place)))
+        continue;
+      found = true;
+      against_way = against_way && !fits;
+      give(lane, lane.position_at(place.s), *kind, *code, signal);
+    }
+    is_given = is_given || found;
+    if (found && against_way)
+      count("signals and references whose orientation contradicts the lanes that they are valid for: the lanes count",
+            place);
+  }
+
+  [[nodiscard]] static bool holds(Lane const& lane, Signal const& place) {
+    return place.s >= lane.road_begin - 0.5 && place.s <= lane.road_end + 0.5;
+  }
+  [[nodiscard]] static bool is_valid_for(Lane const& lane, Signal const& place) {
+    return std::any_of(place.validities.begin(), place.validities.end(), [&](auto const& validity) {
+      return lane.number >= std::min(validity.from_lane, validity.to_lane) &&
+             lane.number <= std::max(validity.from_lane, validity.to_lane);
+    });
+  }
+
+  /// An arrow light before a junction is for the ways behind the lane that turn so.
+  void give(Lane& lane, double s, SignalKind kind, SignalCode const& code, Signal const& signal) {
+    LightId const light = kind == SignalKind::light ? light_of(signal, code) : none<LightId>;
+    std::vector<Lane*> ways;
+    if (code.arrow != Arrow::none)
+      for (auto const next : lane.successors)
+        if (has(code.arrow, turn_of(lanes_[index_of(next)]))) ways.push_back(&lanes_[index_of(next)]);
+    if (ways.empty() || ways.size() == lane.successors.size()) return lane.signals.push_back({s, kind, light});
+    for (auto* const way : ways) way->signals.push_back({0.0, kind, light});
+  }
+
+  [[nodiscard]] static Arrow turn_of(Lane const& lane) {
+    double const turn = geometry::angle_difference(lane.path.end_pose().heading, lane.path.begin_pose().heading);
+    return turn > 0.5 ? Arrow::left : turn < -0.5 ? Arrow::right : Arrow::straight;
+  }
+
+  /// The light that a signal belongs to: its controller's; bulbs without one are a light with those at their place.
+  [[nodiscard]] LightId light_of(Signal const& signal, SignalCode const& code) {
+    auto const controller = controllers_.find(signal.id);
+    auto name = controller == controllers_.end() ? "signal " + signal.id : controller->second;
+    if (controller == controllers_.end() && code.meaning == SignalMeaning::bulb) {
+      auto const t = std::string(attribute(signal, "t"));
+      name = bulbs_.try_emplace(std::tuple(roads_.at(&signal), std::lround(signal.s), t), name).first->second;
+    }
+    auto const [known, is_new] = ids_.emplace(name, static_cast<LightId>(lights_.size()));
+    if (is_new) lights_.push_back({known->second, name});
+    return known->second;
+  }
+
+  void report(Signal const& signal, std::size_t road, std::string sentence) {
+    findings_.add(Severity::warning, signal.line, "signal",
+                  "road " + document_.roads[road].id + ", signal " + signal.id, std::move(sentence));
+  }
+
+  /// Counts findings of one kind; the first says where.
+  void count(std::string sentence, Signal const& signal) {
+    auto const [at, is_new] = counts_.try_emplace(std::move(sentence), Count{&signal, 0});
+    ++at->second.count;
+  }
+
+  void report_rest() {
+    for (auto const& road : document_.roads)
+      for (auto const& signal : road.signals)
+        if (auto const at = given_.find(&signal); at != given_.end() && !at->second)
+          report(signal, roads_.at(&signal), "it counts for no lane: see its s, orientation and validity");
+    for (auto const& [sentence, of] : counts_)
+      findings_.add(Severity::warning, of.first->line, "signal", "signal " + of.first->id,
+                    sentence + (of.count > 1 ? " (" + std::to_string(of.count) + " of them)" : ""));
+  }
+
+  struct Count {
+    Signal const* first;
+    int count;
+  };
+
+  OpenDriveDocument const& document_;
+  std::span<Lane> lanes_;
+  Findings& findings_;
+  std::vector<std::vector<LaneId>> of_road_;
+  std::map<std::string, std::string> controllers_;  ///< by signal
+  std::map<std::string, Signal const*> signals_;
+  std::map<Signal const*, std::size_t> roads_;  ///< of each signal
+  std::map<Signal const*, bool> given_;         ///< whether a lane has it, of signs and lights that count
+  std::map<std::string, Count> counts_;
+  std::map<std::tuple<std::size_t, long, std::string>, std::string> bulbs_;  ///< the name of the light at a place
+  std::map<std::string, LightId> ids_;
+  std::vector<TrafficLight> lights_;
+};
+
+}  // namespace cambium::map::detail

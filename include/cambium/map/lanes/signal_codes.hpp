@@ -1,0 +1,140 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace cambium::map {
+
+/// What a code of a country's catalogue of signs and lights says.
+enum class SignalMeaning : std::uint8_t {
+  priority,
+  give_way,
+  stop,
+  light,        ///< for vehicles, of all or one direction
+  bulb,         ///< one lamp of such a light
+  speed_limit,  ///< whose value is written beside the code
+  other,        ///< of no effect on who goes first: lights for others, lines, places, ...
+};
+
+/// Which ways an arrow light is for, as bits.
+enum class Arrow : std::uint8_t { none = 0, left = 1, straight = 2, right = 4 };
+
+[[nodiscard]] constexpr Arrow operator|(Arrow a, Arrow b) {
+  return static_cast<Arrow>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
+}
+[[nodiscard]] constexpr bool has(Arrow arrow, Arrow way) {
+  return (static_cast<std::uint8_t>(arrow) & static_cast<std::uint8_t>(way)) != 0;
+}
+
+/// A row of the catalogue. Country "" stands for OpenDRIVE's own numbers and for the German ones, which files of all
+/// countries use; subtype "" for any.
+struct SignalCode {
+  std::string_view country, type, subtype;
+  SignalMeaning meaning{};
+  Arrow arrow = Arrow::none;
+};
+
+/// The codes that are known, in lower case. Sources: the tables of signs and of bulbs of esmini (77028d8), CARLA's list
+/// of types (0f5e668), Lanelet2's tagging rules (ae39c8d), commonroad-io's lists by country (8275861); US R1-2 from the
+/// MUTCD, second-hand.
+inline constexpr std::array signal_codes{
+    SignalCode{"", "1000001", "", SignalMeaning::light},
+    SignalCode{"", "1000009", "", SignalMeaning::light},
+    SignalCode{"", "1000016", "", SignalMeaning::light},
+    SignalCode{"", "1000017", "", SignalMeaning::light},
+    SignalCode{"", "1000018", "", SignalMeaning::light},
+    SignalCode{"", "1000019", "", SignalMeaning::light},
+    SignalCode{"", "1000010", "10", SignalMeaning::light, Arrow::left},
+    SignalCode{"", "1000010", "20", SignalMeaning::light, Arrow::right},
+    SignalCode{"", "1000010", "", SignalMeaning::light},
+    SignalCode{"", "1000011", "10", SignalMeaning::light, Arrow::left},
+    SignalCode{"", "1000011", "20", SignalMeaning::light, Arrow::right},
+    SignalCode{"", "1000011", "30", SignalMeaning::light, Arrow::straight},
+    SignalCode{"", "1000011", "40", SignalMeaning::light, Arrow::straight | Arrow::left},
+    SignalCode{"", "1000011", "50", SignalMeaning::light, Arrow::straight | Arrow::right},
+    SignalCode{"", "1000011", "", SignalMeaning::light},
+    SignalCode{"", "1000008", "", SignalMeaning::bulb},
+    SignalCode{"", "1000012", "", SignalMeaning::bulb},
+    SignalCode{"", "1000020", "", SignalMeaning::bulb},
+    SignalCode{"", "1000002", "", SignalMeaning::other},
+    SignalCode{"", "1000003", "", SignalMeaning::other},
+    SignalCode{"", "1000004", "", SignalMeaning::other},
+    SignalCode{"", "1000007", "", SignalMeaning::other},
+    SignalCode{"", "1000013", "", SignalMeaning::other},
+    SignalCode{"", "1000014", "", SignalMeaning::other},
+    SignalCode{"", "1000015", "", SignalMeaning::other},
+    SignalCode{"", "205", "", SignalMeaning::give_way},
+    SignalCode{"", "206", "", SignalMeaning::stop},
+    SignalCode{"", "301", "", SignalMeaning::priority},
+    SignalCode{"", "306", "", SignalMeaning::priority},
+    SignalCode{"", "274", "", SignalMeaning::speed_limit},
+    SignalCode{"", "274.1", "", SignalMeaning::speed_limit},
+    SignalCode{"", "208", "", SignalMeaning::other},
+    SignalCode{"", "215", "", SignalMeaning::other},
+    SignalCode{"", "267", "", SignalMeaning::other},
+    SignalCode{"", "274.2", "", SignalMeaning::other},
+    SignalCode{"", "278", "", SignalMeaning::other},
+    SignalCode{"", "294", "", SignalMeaning::other},
+    SignalCode{"", "307", "", SignalMeaning::other},
+    SignalCode{"", "310", "", SignalMeaning::other},
+    SignalCode{"", "311", "", SignalMeaning::other},
+    SignalCode{"us", "r1-1", "", SignalMeaning::stop},
+    SignalCode{"us", "r1-2", "", SignalMeaning::give_way},
+    SignalCode{"us", "r1-3", "", SignalMeaning::stop},
+    SignalCode{"us", "r2-1", "", SignalMeaning::speed_limit},
+    SignalCode{"us", "r5-1", "", SignalMeaning::other},
+    SignalCode{"au", "r1-1", "", SignalMeaning::stop},
+    SignalCode{"au", "r1-2", "", SignalMeaning::give_way},
+    SignalCode{"es", "r1", "", SignalMeaning::give_way},
+    SignalCode{"es", "r2", "", SignalMeaning::stop},
+    SignalCode{"es", "r301", "", SignalMeaning::speed_limit},
+    SignalCode{"se", "c", "31", SignalMeaning::speed_limit},
+    SignalCode{"cn", "jin", "", SignalMeaning::speed_limit},
+    SignalCode{"cn", "shi", "", SignalMeaning::other},
+};
+
+namespace detail {
+
+[[nodiscard]] inline std::string lower_case(std::string_view word) {
+  std::string text(word);
+  for (char& letter : text)
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  return text;
+}
+
+/// The number of a catalogue without the dots that group its digits by three: "1.000.001" is 1000001, "274.1" stays.
+[[nodiscard]] inline std::string without_groups(std::string const& type) {
+  std::string text;
+  auto const is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (std::size_t i = 0; i < type.size(); ++i) {
+    auto const group = std::string_view(type).substr(i + 1, 3);
+    bool const ends = i + 4 >= type.size() || type[i + 4] == '.';
+    if (type[i] == '.' && group.size() == 3 && ends && std::all_of(group.begin(), group.end(), is_digit)) continue;
+    text += type[i];
+  }
+  return text;
+}
+
+}  // namespace detail
+
+/// The row of a code as a file has it, in any spelling: "DEU" or "Germany" for the country, "1.000.001" for a number; a
+/// subtype of "-1" or "none" is none. Null where it is not known.
+[[nodiscard]] inline SignalCode const* find_signal_code(std::string_view country, std::string_view type,
+                                                        std::string_view subtype) {
+  auto where = detail::lower_case(country);
+  if (where == "usa") where = "us";
+  if (where != "us" && where != "au" && where != "es" && where != "se" && where != "cn") where.clear();
+  auto const what = detail::without_groups(detail::lower_case(type));
+  auto const part = detail::lower_case(subtype);
+  for (auto const& of : {where, std::string()})
+    for (auto const& code : signal_codes)
+      if (code.country == of && code.type == what && (code.subtype.empty() || code.subtype == part)) return &code;
+  return nullptr;
+}
+
+}  // namespace cambium::map
