@@ -16,6 +16,7 @@
 #include "cambium/map/building/detail/lane_signals.hpp"
 #include "cambium/map/building/detail/link_check.hpp"
 #include "cambium/map/building/detail/missing_links.hpp"
+#include "cambium/map/building/detail/path_check.hpp"
 #include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/building/detail/section_sampler.hpp"
 #include "cambium/map/building/detail/split_roads.hpp"
@@ -129,6 +130,7 @@ class MapBuild {
 
   /// Junctions and overlaps: all that a world needs.
   [[nodiscard]] std::shared_ptr<Map const> finish(ExactPath const& path) {
+    report_paths(parts_.lanes, parts_.roads, findings_);
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
     find_overlaps(
