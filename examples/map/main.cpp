@@ -84,13 +84,18 @@ int run(Settings const& settings) {
   if (!settings.poses.empty())
     cambium::write_file(settings.out, example::poses(map, settings.poses, settings.in_space));
   if (!settings.nearest.empty()) cambium::write_file(settings.out, example::nearest(map, settings.nearest));
+  if (!settings.links.empty() && !opened.lanelets.empty())
+    throw cambium::Error("--links", "the file has no OpenDRIVE roads", "give an .xodr file");
   if (!settings.links.empty()) cambium::write_file(settings.links, example::links(opened.document));
   return settings.strict && example::is_odd(opened) ? 1 : 0;
 }
 
 /// Adds the options with their help texts.
 void describe(CLI::App& program, Settings& settings) {
-  program.add_option("FILE", settings.file, "OpenDRIVE map (.xodr), or columns x,y: a lane's centre line (.csv)")
+  program
+      .add_option(
+          "FILE", settings.file,
+          "OpenDRIVE (.xodr), Lanelet2 (.osm) or CommonRoad (.xml) map, or columns x,y: a lane's centre line (.csv)")
       ->type_name("")
       ->required();
   auto* const picture =

@@ -149,7 +149,10 @@ inline std::string map_text(cb::Map const& map) {
 inline std::string summary(OpenedMap const& opened, std::string const& file) {
   std::map<std::string, std::size_t> severities;
   for (auto const& diagnostic : opened.diagnostics) ++severities[std::string(to_string(diagnostic.severity))];
-  return file + '\n' + document_text(opened.document) + map_text(*opened.map) +
+  auto const content = opened.lanelets.empty() ? document_text(opened.document)
+                                               : line("file", cb::detail::printable(opened.lanelets)) +
+                                                     line("lights", std::to_string(opened.map->lights().size()));
+  return file + '\n' + content + map_text(*opened.map) +
          line("diagnostics", severities.empty() ? "none" : list(severities));
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/map/lanelet/lanelet_map.hpp"
+#include "cambium/map/lanes/signal_codes.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/xml.hpp"
@@ -23,12 +24,14 @@ inline constexpr std::pair<std::string_view, map::LaneType> common_road_lane_typ
     {"accessRamp", map::LaneType::on_ramp}, {"exitRamp", map::LaneType::off_ramp},
     {"crosswalk", map::LaneType::walking}};
 
-/// The parts of an OpenDRIVE-like catalogue of signs that matter, by country or without one.
-[[nodiscard]] inline std::optional<map::SignalKind> common_road_sign(std::string_view id) {
-  if (id == "205" || id == "R1-2") return map::SignalKind::give_way;
-  if (id == "206" || id == "R1-1") return map::SignalKind::stop;
-  if (id == "301" || id == "306") return map::SignalKind::priority;
-  return std::nullopt;
+/// What a sign says by the catalogue of a benchmark's country, "DEU_Test-1_1" or "C-USA_US101-1_1_T-1"; by the American
+/// one where the country is none on Earth, as Zamunda (ZAM) is.
+[[nodiscard]] inline map::SignalCode const* common_road_sign(std::string_view benchmark, std::string_view id) {
+  if (benchmark.starts_with("C-")) benchmark.remove_prefix(2);
+  auto const country = benchmark.substr(0, 3);
+  for (auto const& [word, code] : {std::pair{"USA", "us"}, {"ZAM", "us"}, {"ESP", "es"}, {"AUS", "au"}, {"CHN", "cn"}})
+    if (word == country) return map::find_signal_code(code, id, "");
+  return map::find_signal_code("", id, "");
 }
 
 /// Reads the lanelets of a CommonRoad file with their signs, lights and intersections, and makes the map of them.
@@ -61,9 +64,12 @@ class CommonRoadLanes : protected CommonRoadValues {
     Sign sign;
     xml::for_each_child(node, "trafficSignElement", [&](Node element) {
       auto const word = text_of(xml::find_child(element, "trafficSignID"));
-      if (auto const kind = common_road_sign(word)) sign.kind = kind;
-      bool const is_limit = word == "274" || word == "R2-1";
-      if (!is_limit) return;
+      auto const* const code = common_road_sign(traffic_.name, word);
+      if (code == nullptr) return warn(element, "its sign " + std::string(word) + " is not known; it was left out");
+      if (code->meaning == map::SignalMeaning::give_way) sign.kind = map::SignalKind::give_way;
+      if (code->meaning == map::SignalMeaning::stop) sign.kind = map::SignalKind::stop;
+      if (code->meaning == map::SignalMeaning::priority) sign.kind = map::SignalKind::priority;
+      if (code->meaning != map::SignalMeaning::speed_limit) return;
       auto const limit = number(element, "additionalValue");
       if (limit && *limit > 0.0 && *limit < 300.0) sign.speed = limit;
     });
