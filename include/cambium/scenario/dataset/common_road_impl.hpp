@@ -95,9 +95,27 @@ class CommonRoadReader : private CommonRoadLanes {
     if (!is_body(*shape)) return warn(node, name + " is not up to 100 m long and wide; it was left out");
     track.states.push_back(*initial);
     if (!stands) read_motion(node, track);
+    if (stands && !is_rectangle(node)) track.outline = outline_from_middle(node, *shape);
+    if (!stands && !is_rectangle(node)) note(node, name + " became the rectangle around it");
     for (auto& state : track.states) shift(state, *shape);
     if (!ids_.insert(*id).second) return warn(node, name + " is there already; the second one was left out");
     traffic_.tracks.push_back(std::move(track));
+  }
+
+  [[nodiscard]] static bool is_rectangle(Node node) {
+    return static_cast<bool>(xml::find_child(xml::find_child(node, "shape"), "rectangle"));
+  }
+  /// The corners of a polygon or circle, whose own heading is 0; none, with a finding, where they are no outline.
+  [[nodiscard]] std::vector<geometry::Point> outline_from_middle(Node node, CommonRoadShape const& shape) {
+    auto outline = shape.outline;
+    for (auto& corner : outline) corner -= shape.center;
+    try {
+      geometry::Polygon const usable(outline);
+    } catch (Error const& problem) {
+      warn(node, std::string(problem.what()) + "; its rectangle was taken");
+      outline.clear();
+    }
+    return outline;
   }
 
   [[nodiscard]] static bool is_body(CommonRoadShape const& shape) {
@@ -149,13 +167,13 @@ class CommonRoadReader : private CommonRoadLanes {
     if (!id) return;
     if (!shape || !is_body(*shape) || !ids_.insert(*id).second)
       return warn(node, "obstacle " + std::to_string(*id) + " has no shape of up to 100 m; it was left out");
-    note(node, "obstacle " + std::to_string(*id) + " became the rectangle around it");
-    traffic_.tracks.push_back({*id,
-                               TrackType::other,
-                               shape->length,
-                               shape->width,
-                               true,
-                               {State{0.0, shape->center.x(), shape->center.y(), shape->heading, 0.0}}});
+    traffic_.tracks.push_back({.id = *id,
+                               .type = TrackType::other,
+                               .length = shape->length,
+                               .width = shape->width,
+                               .stands = true,
+                               .states = {State{0.0, shape->center.x(), shape->center.y(), shape->heading, 0.0}}});
+    if (!is_rectangle(node)) traffic_.tracks.back().outline = outline_from_middle(node, *shape);
   }
 
   void read_problem(Node node) {

@@ -214,24 +214,24 @@ class CommonRoadWriter {
         if (light.name == name && index_of(light.id) < traffic_.lights.size())
           plan = traffic_.lights[index_of(light.id)];
     bool const is_on = plan.cycle > 0.0;
-    auto const in_steps = [&](double time) {
-      return std::to_string(std::max<std::int64_t>(1, std::llround(time / traffic_.time_step)));
-    };
+    auto const in_steps = [&](double time) { return steps(time, "light " + name); };
     text_.element("trafficLight", [&] {
       attribute("id", std::to_string(id));
       text_.element("cycle", [&] {
-        auto const phase = [&](double time, char const* color) {
-          if (!(time > 0.0)) return;
+        auto const phase = [&](std::string const& duration, char const* color) {
           text_.element("cycleElement", [&] {
-            leaf("duration", in_steps(time));
+            leaf("duration", duration);
             leaf("color", color);
           });
         };
-        double const green = is_on ? std::min(plan.cycle, plan.green_end - plan.green_begin) : 1.0;
-        phase(green, "green");
-        phase(std::min(plan.yellow, plan.cycle - green), "yellow");
-        phase(plan.cycle - green - plan.yellow, "red");
-        leaf("timeOffset", is_on && plan.green_begin > 0.0 ? in_steps(plan.green_begin) : "0");
+        double const green = std::min(plan.cycle, plan.green_end - plan.green_begin),
+                     yellow = std::min(plan.yellow, plan.cycle - green), red = plan.cycle - green - yellow;
+        if (!is_on) phase("1", "green");
+        if (green > 0.0) phase(in_steps(green), "green");
+        if (yellow > 0.0) phase(in_steps(yellow), "yellow");
+        if (red > 0.0) phase(in_steps(red), "red");
+        double const offset = is_on ? plan.green_begin - std::floor(plan.green_begin / plan.cycle) * plan.cycle : 0.0;
+        if (offset > 0.0) leaf("timeOffset", in_steps(offset));
       });
       leaf("active", is_on ? "true" : "false");
     });
@@ -249,6 +249,10 @@ class CommonRoadWriter {
       attribute("id", std::to_string(unused(track.id)));
       leaf("type", type_word(track));
       text_.element("shape", [&] {
+        if (!track.outline.empty())
+          return text_.element("polygon", [&] {
+            for (auto const& corner : track.outline) point(corner);
+          });
         text_.element("rectangle", [&] {
           leaf("length", decimal_text(track.length));
           leaf("width", decimal_text(track.width));

@@ -162,6 +162,13 @@ CAMBIUM_COLD std::vector<map::LightPlan> lights_from(RecordedTraffic const& traf
 
 CAMBIUM_COLD geometry::Polygon outline_of(Track const& track) {
   auto const& at = track.states.front();
+  if (!track.outline.empty()) {
+    auto const [sin, cos] = geometry::sin_cos(at.heading);
+    std::vector<geometry::Point> corners;
+    for (auto const& p : track.outline)
+      corners.emplace_back(at.x + cos * p.x() - sin * p.y(), at.y + sin * p.x() + cos * p.y());
+    return geometry::Polygon(corners);
+  }
   double const length = 0.5 * track.length, width = 0.5 * track.width;
   return geometry::polygon_of(geometry::box_of({length, length, width, width}, {at.x, at.y, at.heading}));
 }

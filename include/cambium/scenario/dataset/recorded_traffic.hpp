@@ -44,6 +44,8 @@ struct Track {
   double width = 1.8;           ///< [m]
   bool stands = false;          ///< an obstacle that stands for good, with one state
   std::vector<State> states{};  ///< of the middle, by rising time; speeds below 0 are backwards
+  /// The outline of one that stands, from its middle, along and left of its heading [m]; empty: a rectangle.
+  std::vector<geometry::Point> outline{};
 
   [[nodiscard]] double begin() const { return states.front().time; }  ///< [s]
   [[nodiscard]] double end() const { return states.back().time; }     ///< [s]

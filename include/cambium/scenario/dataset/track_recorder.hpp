@@ -35,12 +35,14 @@ class TrackRecorder {
     std::int64_t id = 4'000'000'000;  // far from those of agents
     for (auto const& object : world.roster().objects) {
       auto const& box = object.outline.bounding_box();
-      traffic_.tracks.push_back({id++,
-                                 TrackType::other,
-                                 box.max_x - box.min_x,
-                                 box.max_y - box.min_y,
-                                 true,
-                                 {State{world.time(), box.center().x(), box.center().y(), 0.0, 0.0}}});
+      traffic_.tracks.push_back({.id = id++,
+                                 .type = TrackType::other,
+                                 .length = box.max_x - box.min_x,
+                                 .width = box.max_y - box.min_y,
+                                 .stands = true,
+                                 .states = {State{world.time(), box.center().x(), box.center().y(), 0.0, 0.0}}});
+      for (auto const& corner : object.outline.points())
+        traffic_.tracks.back().outline.push_back(corner - box.center());
     }
     record(world);
   }
