@@ -39,6 +39,7 @@ struct TrackTable {
   bool mirrored = false;
   bool sideways = false;
   TrackAnchor anchor = TrackAnchor::middle;
+  double longest_gap = 2.0;
 
   static constexpr char const* name = "track_table";
   static constexpr auto parameters() {
@@ -48,7 +49,9 @@ struct TrackTable {
         parameter("length_unit", &P::length_unit, "m", positive, "the unit of places and sizes; of speeds, per second"),
         parameter("mirrored", &P::mirrored, "y grows to the right of x, as in pictures"),
         parameter("sideways", &P::sideways, "y is along the road and x to the right of it"),
-        choice("anchor", &P::anchor, "middle|front_middle|corner", "which point of the body is given"));
+        choice("anchor", &P::anchor, "middle|front_middle|corner", "which point of the body is given"),
+        parameter("longest_gap", &P::longest_gap, "s", positive,
+                  "an id that comes again after a longer time is another road user, with a new id"));
   }
 };
 
@@ -68,7 +71,7 @@ struct TrackTable {
 /// messages. Rows may come in any order. `RecordedTraffic::time_step` is the least difference of two times of a track.
 /// Throws `Error` with the line where a column or cell is missing or no number, and where a track has two rows for one
 /// time; with the track where its size is impossible. Sizes that change within a track, velocities that contradict the
-/// motion, and gaps in time are diagnostics. O(n log n).
+/// motion, gaps in time and ids that come again are diagnostics. O(n log n).
 [[nodiscard]] RecordedTraffic read_tracks(std::string_view text, TrackTable const& table = interaction_tracks(),
                                           std::string const& name = "text");
 

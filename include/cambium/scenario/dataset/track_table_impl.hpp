@@ -78,6 +78,7 @@ class TrackTableReader {
       columns_ == 0 ? read_heading(row) : read_row(row);
     }
     if (columns_ == 0) throw Error(name_, "it has no row", "give a table whose first row names the columns");
+    part_at_gaps();
     double step = std::numeric_limits<double>::infinity();
     for (auto& read : read_) step = std::min(step, finish(read));
     if (std::isfinite(step)) traffic_.time_step = step;
@@ -208,10 +209,29 @@ class TrackTableReader {
   [[nodiscard]] bool has_velocity() const { return place_[vx] && place_[vy]; }
   [[nodiscard]] bool has_speed() const { return has_velocity() || place_[speed]; }
 
-  /// Fills the track from its rows; the least difference of their times [s].
+  /// Sorts the rows by time; whoever is not recorded for long and comes again is somebody else.
+  void part_at_gaps() {
+    std::int64_t unused = 0;
+    for (auto const& read : read_) unused = std::max(unused, read.track.id + 1);
+    for (std::size_t i = 0; i < read_.size(); ++i) {  // those that are added, too
+      stable_sort(read_[i].rows, [](Row const& row) { return row.state.time; });
+      auto const& rows = read_[i].rows;
+      std::size_t k = 1;
+      while (k < rows.size() && rows[k].state.time - rows[k - 1].state.time <= table_.longest_gap) ++k;
+      if (k >= rows.size()) continue;
+      report(Severity::warning, rows[k].line, read_[i].track,
+             "nothing is recorded for " + rounded_text(rows[k].state.time - rows[k - 1].state.time) +
+                 " s before this row; from here on it is another one, track " + std::to_string(unused));
+      Read behind{read_[i].track, {rows.begin() + static_cast<std::ptrdiff_t>(k), rows.end()}, read_[i].size_changes};
+      behind.track.id = unused++;
+      read_[i].rows.resize(k);
+      read_.push_back(std::move(behind));
+    }
+  }
+
+  /// Fills the track from its rows, which are sorted; the least difference of their times [s].
   double finish(Read& read) {
     auto& rows = read.rows;
-    stable_sort(rows, [](Row const& row) { return row.state.time; });
     double step = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < rows.size(); ++i) {
       double const passed = rows[i].state.time - rows[i - 1].state.time;
