@@ -231,6 +231,19 @@ TEST_CASE("what is odd in a table is a finding") {
   CHECK(text.find("text:7: info: track 3: nothing is recorded for 0.7 s") != std::string::npos);
 }
 
+TEST_CASE("an id that comes again after a long time is another road user") {
+  std::string text = table;
+  for (auto const& [time, x] : {std::pair{300'000, 400}, {300'100, 401}})
+    text += "3,9," + std::to_string(time) + ",car," + std::to_string(x) + ",2,5,0,0,4.2,1.7\n";
+  auto const traffic = read_tracks(text);
+  REQUIRE(traffic.tracks.size() == 3);
+  CHECK(traffic.track(3).end() == doctest::Approx(0.3));
+  CHECK(traffic.track(5).begin() == doctest::Approx(300.0));
+  CHECK(traffic.track(5).at(300.0).x == doctest::Approx(400.0));
+  CHECK(text_of(traffic.diagnostics).find("from here on it is another one, track 5") != std::string::npos);
+  CHECK(read_tracks(text, {.longest_gap = 1000.0}).tracks.size() == 2);
+}
+
 TEST_CASE("tracks that are written as a table read back the same") {
   auto traffic = cars();
   traffic.tracks.pop_back();  // what stands is a track like others there
@@ -250,6 +263,34 @@ TEST_CASE("tracks that are written as a table read back the same") {
 }
 
 // --- CommonRoad ------------------------------------------------------------------------------------------------------
+
+TEST_CASE("what stands keeps its outline, in a scenario and in a file") {
+  std::string const box = "<rectangle><length>4.5</length><width>1.8</width></rectangle>";
+  for (auto const& [shape, area] :
+       {std::pair{std::string("<polygon><point><x>0</x><y>0</y></point><point><x>10</x><y>10</y></point>"
+                              "<point><x>10</x><y>10.5</y></point><point><x>0</x><y>0.5</y></point></polygon>"),
+                  5.0},
+        {std::string("<circle><radius>2</radius></circle>"), 12.5}}) {
+    auto const traffic = parse_common_road(replaced(common_road(), box, shape));
+    auto const objects = recorded_scenario<Sim>(traffic).objects;
+    REQUIRE(objects.size() == 1);
+    CHECK(0.5 * std::abs(geometry::twice_area(objects[0].points())) == doctest::Approx(area).epsilon(0.01));
+    CHECK(parse_common_road(common_road_text(traffic)).track(30).outline == traffic.track(30).outline);
+  }
+}
+
+TEST_CASE("lights are written in whole steps, from the begin of green, or not at all") {
+  auto traffic = parse_common_road(common_road());
+  for (auto const& plan : {map::LightPlan{.cycle = 20.4, .green_begin = 25.0, .green_end = 33.2, .yellow = 3.0},
+                           map::LightPlan{.cycle = 60.0, .green_begin = -4.0, .green_end = 20.0, .yellow = 0.0}}) {
+    traffic.lights[0] = plan;
+    auto const again = parse_common_road(common_road_text(traffic)).lights[0];
+    for (double time = 0.1; time < 130.0; time += 0.2) CHECK(again.at(time) == plan.at(time));
+  }
+  traffic.lights[0] = {.cycle = 20.0, .green_begin = 0.0, .green_end = 9.9, .yellow = 3.0};
+  CHECK(support::error_of([&] { return common_road_text(traffic); }).find("light 8: its time 9.9 s is no multiple") !=
+        std::string::npos);
+}
 
 TEST_CASE("a CommonRoad scenario has lanes, limits, signs, lights, tracks and a planning problem") {
   auto const traffic = parse_common_road(common_road());
