@@ -33,12 +33,14 @@ struct Lanelet2Origin {
 
 /// The lanelets of a Lanelet2 file (OSM XML); `file` names it in messages. Nodes have `lat` and `lon`, or tags
 /// `local_x` and `local_y` [m], which count where all nodes have them. A lanelet follows another where it begins at the
-/// nodes where that ends, and lies beside it where they share a way. Read are: one way or both; the subtypes road,
-/// highway, play_street, exit, emergency_lane, bus_lane, bicycle_lane, walkway, shared_walkway and parking (others,
-/// such as crosswalks, are left out); speed limits (tag `speed_limit`, or elements of that kind); dashed, solid and
-/// mixed lines; `turn_direction` (it lies in an intersection); right of way, all-way stops, traffic lights and signs
-/// (205, 206, 301, 306) with their stop lines. Throws `MapError` where the text is no OSM file, has no lanelets, or a
-/// place is no number; what else is odd goes to `diagnostics`. Linear in the text.
+/// nodes where that ends, and lies beside it where they share a way. Read are: one way or both; subtypes and
+/// participants, which give the kind of lane (who may neither drive, cycle nor walk there is left out); speed limits of
+/// elements (by their German signs, or `sign_type`), of the tag `speed_limit`, else Lanelet2's German ones by location
+/// and subtype; who may change lanes, by the tags `lane_change`, else by the lines; `turn_direction` (it lies in an
+/// intersection); right of way (between ways through an intersection a priority, else signs), all-way stops, traffic
+/// lights (those with the same heads are one) and signs (see `signal_codes`) with their stop lines. Throws `MapError`
+/// where the text is no OSM file, has no lanelets, or a place is no number; what else is odd goes to `diagnostics`.
+/// Linear in the text.
 [[nodiscard]] std::vector<Lanelet> read_lanelet2(std::string_view text, std::optional<Lanelet2Origin> const& origin,
                                                  std::string const& file, std::vector<Diagnostic>& diagnostics);
 

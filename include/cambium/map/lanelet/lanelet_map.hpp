@@ -20,12 +20,14 @@ struct LaneletMap {
   std::vector<Diagnostic> diagnostics;
 };
 
-/// The map of `lanelets`; `file` names them in messages. Lanelets side by side become one road (named by the id of the
-/// leftmost), those that cross others, with those that leave or enter the road beside them, a junction. What cannot be
-/// used is left out, with a diagnostic: bounds that cross or have fewer than two points, links to lanelets that are not
-/// there or do not begin where the other ends (to 0.5 m and 0.5 rad), neighbours that do not lie beside each other.
-/// Traffic keeps to the right. Throws `MapError` where no lanelet is left, and as `build_map`. O(n^2) comparisons of
-/// boxes for n lanelets.
+/// The map of `lanelets`; `file` names them in messages. Each lanelet becomes a road, named by its id, with one lane:
+/// its path is the middle between its own bounds (points of equal shares of their lengths), smoothed, so that it turns
+/// no more than these do. Lanelets whose bounds meet are linked, whatever the turn; where the file does not say so,
+/// with a diagnostic. Neighbours are those that run beside each other for at least half of their length; lanes are
+/// changed where they do. Lanelets that cross others, with those that leave or enter the same road beside them, lie in
+/// a junction. What cannot be used is left out, with a diagnostic: bounds that cross or have fewer than two points,
+/// links to lanelets that are not there or begin more than 0.4 m away, neighbours elsewhere. Traffic keeps to the
+/// right. Throws `MapError` where no lanelet is left, and as `build_map`. O(n^2) comparisons of boxes for n lanelets.
 [[nodiscard]] LaneletMap build_lanelet_map(std::vector<Lanelet> lanelets, MapOptions const& options = {},
                                            std::string const& file = "lanelets");
 
