@@ -163,6 +163,10 @@ class LaneletMapMaker {
     if (k == LaneletNetwork::nobody || !is_valid(lanes_[k])) return;
     auto const &left = network_.lanelets[i], &right = network_.lanelets[k];
     auto &own = lane_of({i}), &other = lane_of({k});
+    if (own.type == LaneType::bus || other.type == LaneType::bus)
+      return network_.report(Severity::info, i,
+                             "it or its neighbour " + std::to_string(right.id) +
+                                 " is for buses; nobody changes lanes between them");
     if (!own.drivable() || !other.drivable()) return;
     if (is_valid(own.opposite) || is_valid(other.opposite))
       return network_.report(Severity::info, i,

@@ -1,0 +1,73 @@
+// CommonRoad's networks against tables of who follows whom and lies beside whom, counted by others.
+#include <doctest/doctest.h>
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "cambium/scenario/dataset/common_road.hpp"
+
+#include "../support/corpus.hpp"
+
+using namespace cambium;
+
+TEST_CASE("lanelets of CommonRoad follow each other and lie beside each other as counted, or a finding names them") {
+  for (std::string const name : {"DEU_Test-1_1_T-1", "ZAM-Ramp-1_1-T-1", "ZAM_Over-1_1", "ZAM_Tjunction-1_42_T-1",
+                                 "ZAM_Tutorial-1_2_T-1", "test_reading_all", "test_reading_lanelets"}) {
+    auto const table = corpus::find("lanelet2/oracle/" + name + ".csv"),
+               file = corpus::find("scenarios/commonroad/" + name + ".xml");
+    if (!table || !file) return;
+    CAPTURE(name);
+    auto const traffic = load_common_road(file->string());
+    std::map<LaneId, std::string> names;
+    for (auto const& [id, lane] : traffic.lanes) {
+      names[lane] = std::to_string(id);
+      if (auto const back = traffic.map->lane(lane).opposite; is_valid(back)) names[back] = "-" + names[lane];
+    }
+    std::set<std::string> named;  // by findings
+    for (auto const& found : traffic.diagnostics)
+      for (auto const& row : corpus::table(*table))
+        if ((found.ids + found.sentence + " ").find(" " + row[0] + " ") != std::string::npos ||
+            found.ids == "lanelet " + row[0])
+          named.insert(row[0]);
+    for (auto const& row : corpus::table(*table)) {
+      CAPTURE(row[0]);
+      auto const& lane = traffic.map->lane(traffic.lanes.at(std::stoll(row[0])));
+      std::string successors;
+      if (!is_valid(lane.merges_into))
+        for (auto const next : lane.successors) successors += (successors.empty() ? "" : "|") + names.at(next);
+      auto const beside = [&](LaneId id) { return is_valid(id) ? names.at(id) : std::string(); };
+      bool const as_in_file = successors == row[2] && beside(lane.left_neighbor) == (row[6] == "same" ? row[5] : "") &&
+                              beside(lane.right_neighbor) == (row[8] == "same" ? row[7] : "");
+      CHECK((as_in_file || named.contains(row[0])));
+      CHECK(successors == row[4]);  // where the bounds meet
+      if (is_valid(lane.left_neighbor) && row[9] != "unsaid") CHECK(!lane.left_changes.empty() == (row[9] == "yes"));
+      if (is_valid(lane.right_neighbor) && row[10] != "unsaid")
+        CHECK(!lane.right_changes.empty() == (row[10] == "yes"));
+    }
+  }
+}
+
+TEST_CASE(
+    "a lane that forks inside an intersection has all successors; lanes in a tight bend turn as their road does") {
+  auto const fork = corpus::find("cases/cr_fork_inside_intersection.xml"),
+             bend = corpus::find("cases/cr_six_lanes_bend_right_02.xml");
+  if (!fork || !bend) return;
+  auto const forked = load_common_road(fork->string());
+  std::size_t links = 0, named = 0;
+  for (auto const& lanelet : forked.lanelets) {
+    named += lanelet.successors.size();
+    links += forked.map->lane(forked.lanes.at(lanelet.id)).successors.size();
+  }
+  CHECK(links == named);
+  CHECK(forked.diagnostics.empty());
+  auto const bent = load_common_road(bend->string());
+  CHECK(bent.map->lanes().size() == 6);
+  double road = 0.0;
+  for (auto const& lane : bent.map->lanes()) {
+    double turn = 0.0;
+    for (auto const& segment : lane.path.segments()) turn += std::abs(segment.curvature) * segment.length;
+    if (road == 0.0) road = turn;
+    CHECK(turn == doctest::Approx(road).epsilon(0.05));
+  }
+}
