@@ -1,6 +1,7 @@
 // CommonRoad's networks against tables of who follows whom and lies beside whom, counted by others.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
