@@ -29,7 +29,7 @@ Expected const expected[]{
     {"DR_DEU_Merging_MT_v01_shifted", 0, 0},
     {"Ex_Entry_Exit", 0, 3},                    // two lane links to lanes that are not there, a gap of 2 cm
     {"ParametricCubicCurveComplexRoad", 0, 0},  // its hdg is not the curves' direction, which has no kinks
-    {"SingleRoadNegativeWidth", 0, 1, true},
+    {"SingleRoadNegativeWidth", 0, 2, true},
     {"SingleRoadSDirectionChange", 0, 0},
     {"SingleRoadTinyGeometry", 0, 1, true},
     {"Town04", 6, 2, true},  // sections without length; gaps in two reference lines
@@ -39,9 +39,10 @@ Expected const expected[]{
     {"highway_example_with_merge_and_split", 0, 0},
     {"lane_border", 0, 0},
     {"libopendrive_test", 26, 6, true},  // the same, and lanes that do not meet by 2 to 5 cm
-    {"multi_intersections", 0, 0},
+    {"multi_intersections", 2, 0},       // links of one side, signs that limit the speed
     {"parking_demo", 0, 0},
-    {"positive18", 0, 0},
+    {"positive18", 1, 17},                // signs that are not known, or stand at no lane
+    {"XCrossStopAllWay", 0, 1},           // signs of type 1022
     {"road_corridor_test", 0, 10, true},  // links to nowhere, and to the wrong ends of roads
     {"route_strategy_test_road", 0, 0},
     {"simple_3way_intersection_lht", 0, 0},

@@ -81,7 +81,7 @@ class LaneSignals {
     if (code->meaning == SignalMeaning::light || code->meaning == SignalMeaning::bulb) kind = SignalKind::light;
     if (!kind) {
       if (code->meaning == SignalMeaning::speed_limit && &signal == &place)
-        count("signs that limit the speed do not count; the limits of roads and lanes do", signal);
+        count("signs that limit the speed do not count; the limits of roads and lanes do", signal, Severity::info);
       return;
     }
     auto& is_given = given_[&signal];
@@ -151,8 +151,8 @@ class LaneSignals {
   }
 
   /// Counts findings of one kind; the first says where.
-  void count(std::string sentence, Signal const& signal) {
-    auto const [at, is_new] = counts_.try_emplace(std::move(sentence), Count{&signal, 0});
+  void count(std::string sentence, Signal const& signal, Severity severity = Severity::warning) {
+    auto const [at, is_new] = counts_.try_emplace(std::move(sentence), Count{severity, &signal, 0});
     ++at->second.count;
   }
 
@@ -162,11 +162,12 @@ class LaneSignals {
         if (auto const at = given_.find(&signal); at != given_.end() && !at->second)
           report(signal, roads_.at(&signal), "it counts for no lane: see its s, orientation and validity");
     for (auto const& [sentence, of] : counts_)
-      findings_.add(Severity::warning, of.first->line, "signal", "signal " + of.first->id,
+      findings_.add(of.severity, of.first->line, "signal", "signal " + of.first->id,
                     sentence + (of.count > 1 ? " (" + std::to_string(of.count) + " of them)" : ""));
   }
 
   struct Count {
+    Severity severity;
     Signal const* first;
     int count;
   };

@@ -124,7 +124,7 @@ class MapBuild {
 
   /// Junctions and overlaps: all that a world needs.
   [[nodiscard]] std::shared_ptr<Map const> finish(ExactPath const& path) {
-    report_paths(parts_.lanes, parts_.roads, findings_);
+    report_paths(parts_.lanes, parts_.roads, document_, findings_);
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
     find_overlaps(

@@ -23,8 +23,8 @@ class MissingLinks {
   MissingLinks(RoadLinks const& links, std::vector<Lane>& lanes, Findings& findings)
       : links_(links), lanes_(lanes), findings_(findings) {}
 
-  /// Reports the possible links, and enters them when asked to, or where the file links their roads. The lanes that were
-  /// left as dead ends.
+  /// Reports the possible links, and enters them when asked to, or where the file links their roads. The lanes that
+  /// were left as dead ends.
   [[nodiscard]] std::set<LaneId> find(bool infer) {
     std::set<LaneId> dead_ends;
     NetworkTolerances const tolerances;

@@ -11,6 +11,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/road.hpp"
 
 namespace cambium::map::detail {
@@ -49,15 +50,17 @@ struct SharpestTurn {
 
 /// Reports drivable lanes that no vehicle can follow: their paths turn by more than 1 rad within a metre or run back,
 /// as on the inner side of a bend that is tighter than the lane is far from it; or they have no width.
-inline void report_paths(std::span<Lane const> lanes, std::span<Road const> roads, Findings& findings) {
+inline void report_paths(std::span<Lane const> lanes, std::span<Road const> roads, OpenDriveDocument const& document,
+                         Findings& findings) {
   constexpr double sharpest = 1.0;  // [rad], a radius of a metre
   using cambium::detail::rounded_text;
   for (auto const& lane : lanes) {
     if (!lane.drivable()) continue;
     auto const& road = roads[index_of(lane.road)];
     auto const report = [&](std::string sentence) {
+      auto const* const written = document.roads[index_of(lane.road)].lane_sections[lane.section].find(lane.number);
       findings.add(
-          Severity::warning, 0, "lane",
+          Severity::warning, written != nullptr ? static_cast<int>(written->line) : 0, "lane",
           "road " + road.name + ", section " + std::to_string(lane.section) + ", lane " + std::to_string(lane.number),
           std::move(sentence));
     };
