@@ -51,6 +51,7 @@ bool needs_more(std::string const& header) {
                                     "map/corridor/road_area.hpp",
                                     "map/fwd.hpp",
                                     "map/lanes/lane_network.hpp",
+                                    "map/lanes/signal_codes.hpp",
                                     "map/lanes/overlaps.hpp",
                                     "map/opendrive.hpp",
                                     "map/road/curve_layout.hpp",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,6 +22,13 @@ namespace cambium::map {
 /// a road, and in the middle of a road of one section that closes upon itself.
 [[nodiscard]] std::shared_ptr<Map const> build_map(OpenDriveDocument document, MapOptions const& options,
                                                    std::string file, std::vector<Diagnostic>& diagnostics);
+
+/// The map of a document whose roads are not linked: `link` enters in its lanes, which have their geometry by then, who
+/// follows whom, who lies beside whom, where lanes may be changed, signs and lights. Afterwards lanes that end while a
+/// neighbour goes on swing over onto that one. Findings and errors as those of `build_map`.
+[[nodiscard]] std::shared_ptr<Map const> build_linked_map(OpenDriveDocument const& document, MapOptions const& options,
+                                                          std::string file, std::vector<Diagnostic>& diagnostics,
+                                                          std::function<void(Map::Parts&)> const& link);
 
 }  // namespace cambium::map
 

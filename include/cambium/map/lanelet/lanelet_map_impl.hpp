@@ -11,15 +11,11 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/geometry/line.hpp"
-#include "cambium/map/building/detail/lane_links.hpp"
-#include "cambium/map/building/detail/lane_merges.hpp"
-#include "cambium/map/building/detail/lane_rules.hpp"
-#include "cambium/map/building/detail/map_build.hpp"
+#include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/building/polyline_roads.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/detail/findings.hpp"
-#include "cambium/map/detail/require_buildable.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
 #include "cambium/map/lanelet/detail/lanelet_network.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
@@ -44,21 +40,18 @@ class LaneletMapMaker {
       throw MapError(findings_.file, "no lanelet is left to make a map of" + likely_cause_here(),
                      "give lanelets with a left and a right bound");
     add_priorities();
-    auto const& document = builder_.document();
-    RequireBuildable::check(document);
-    MapBuild build(document, options, findings_.file, findings_.list);
-    build.add_lanes();
-    parts_ = &build.parts();
-    find_lanes();
-    link();
-    for (std::size_t i = 0; i < lanes_.size(); ++i)
-      if (is_valid(lanes_[i])) put_beside(i);
-    merge();
-    set_speed_limits(document, parts_->lanes);
-    for (std::size_t i = 0; i < lanes_.size(); ++i)
-      if (is_valid(lanes_[i])) add_signals(i);
     LaneletMap result;
-    result.map = build.finish([](Lane const& lane, double s) { return lane.path.pose(s); });
+    result.map =
+        build_linked_map(builder_.document(), options, findings_.file, findings_.list, [this](Map::Parts& parts) {
+          parts_ = &parts;
+          find_lanes();
+          link();
+          for (std::size_t i = 0; i < lanes_.size(); ++i) {
+            if (!is_valid(lanes_[i])) continue;
+            put_beside(i);
+            add_signals(i);
+          }
+        });
     for (std::size_t i = 0; i < lanes_.size(); ++i)
       if (is_valid(lanes_[i])) result.lanes.emplace(network_.lanelets[i].id, lanes_[i]);
     return result;
@@ -134,7 +127,11 @@ class LaneletMapMaker {
 
   void link() {
     for (auto const& [from, to] : network_.links)
-      if (is_valid(lanes_[from.lanelet]) && is_valid(lanes_[to.lanelet])) join_lanes(lane_of(from), lane_of(to));
+      if (is_valid(lanes_[from.lanelet]) && is_valid(lanes_[to.lanelet])) {
+        auto &before = lane_of(from), &behind = lane_of(to);
+        before.successors.push_back(behind.id);
+        behind.predecessors.push_back(before.id);
+      }
     for (auto& lane : parts_->lanes) {
       std::sort(lane.successors.begin(), lane.successors.end());
       std::sort(lane.predecessors.begin(), lane.predecessors.end());
@@ -164,9 +161,9 @@ class LaneletMapMaker {
     auto const &left = network_.lanelets[i], &right = network_.lanelets[k];
     auto &own = lane_of({i}), &other = lane_of({k});
     if (own.type == LaneType::bus || other.type == LaneType::bus)
-      return network_.report(Severity::info, i,
-                             "it or its neighbour " + std::to_string(right.id) +
-                                 " is for buses; nobody changes lanes between them");
+      return network_.report(
+          Severity::info, i,
+          "it or its neighbour " + std::to_string(right.id) + " is for buses; nobody changes lanes between them");
     if (!own.drivable() || !other.drivable()) return;
     if (is_valid(own.opposite) || is_valid(other.opposite))
       return network_.report(Severity::info, i,
@@ -176,24 +173,6 @@ class LaneletMapMaker {
     other.left_neighbor = own.id;
     if (left.may_change_right) own.right_changes = stretches_beside(i, false, right.left);
     if (right.may_change_left) other.left_changes = stretches_beside(k, true, left.right);
-  }
-
-  /// A lane that ends while its neighbour goes on swings over onto that one; from the lanes that go on outwards, for
-  /// one may merge into another that merges itself.
-  void merge() {
-    for (bool found = true; found;) {
-      found = false;
-      for (auto& lane : parts_->lanes)
-        for (auto const side : {lane.left_neighbor, lane.right_neighbor}) {
-          if (!is_valid(side) || !lane.successors.empty()) continue;
-          auto const& beside = parts_->lanes[index_of(side)];
-          if (beside.successors.empty()) continue;
-          swing_over(lane, beside, parts_->options.merge_length);
-          lane.successors = beside.successors;
-          for (auto const next : lane.successors) parts_->lanes[index_of(next)].predecessors.push_back(lane.id);
-          found = true;
-        }
-    }
   }
 
   void add_signals(std::size_t i) {

@@ -79,6 +79,24 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
   lane.stations = std::move(stations);
 }
 
+/// Lets lanes that end while their neighbour goes on merge into that one; from the lanes that go on outwards, for one
+/// may merge into another that merges itself.
+inline void merge_into_neighbors(Map::Parts& parts) {
+  for (bool found = true; found;) {
+    found = false;
+    for (auto& lane : parts.lanes)
+      for (auto const side : {lane.left_neighbor, lane.right_neighbor}) {
+        if (!is_valid(side) || !lane.successors.empty()) continue;
+        auto const& beside = parts.lanes[index_of(side)];
+        if (beside.successors.empty()) continue;
+        swing_over(lane, beside, parts.options.merge_length);
+        lane.successors = beside.successors;
+        for (auto const next : lane.successors) parts.lanes[index_of(next)].predecessors.push_back(lane.id);
+        found = true;
+      }
+  }
+}
+
 /// Lets lanes that end while their neighbour goes on merge into that one; not those in `dead_ends`. A lane that is
 /// linked to a neighbour's successor beside its own end ends, too.
 class LaneMerger {
