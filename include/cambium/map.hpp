@@ -88,8 +88,9 @@
 /// below `cambium/map/`: `opendrive.hpp` reads files (pugixml); `building/map_builder.hpp`, `building/road_plan.hpp`,
 /// `road/curve_layout.hpp`, `building/polyline_roads.hpp` and `building/center_line_csv.hpp` make maps in code;
 /// `building/build_map.hpp` makes a map from an `opendrive/document.hpp`; `lanes/signal_codes.hpp` lists signs and
-/// lights by country; `lanes/lane_network.hpp`, `opendrive/check.hpp` and `opendrive/writer.hpp` check and write; `road/road_surface.hpp` (Eigen) and
-/// `corridor/road_area.hpp` (Boost.Geometry) tell where lanes lie in space, and their union.
+/// lights by country; `lanes/lane_network.hpp`, `opendrive/check.hpp` and `opendrive/writer.hpp` check and write;
+/// `road/road_surface.hpp` (Eigen) and `corridor/road_area.hpp` (Boost.Geometry) tell where lanes lie in space, and
+/// their union.
 #pragma once
 
 // First: it says which language and flags cambium needs.
