@@ -299,9 +299,10 @@ int main(int argc, char** argv) {
       ->check(whole_number(1, 1024))
       ->capture_default_str();
   program
-      .add_option("--map", settings.map_file,
-                  "a map (.xodr, .osm, .xml); default: all own ones, and ten of the corpus in the folder CAMBIUM_CORPUS, or in "
-                  "../shared")
+      .add_option(
+          "--map", settings.map_file,
+          "a map (.xodr, .osm, .xml); default: all own ones, and ten of the corpus in the folder CAMBIUM_CORPUS, or in "
+          "../shared")
       ->type_name("FILE")
       ->check(not_empty());
   program.add_option("--json", settings.json_file, "file for the table and all findings")

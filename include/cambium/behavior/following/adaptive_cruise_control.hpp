@@ -60,7 +60,8 @@ class AccLaw {
  public:
   static constexpr bool asks_acceleration = true;  ///< of leaders
 
-  /// Of a driver with IDM parameters `p` at `speed` [m/s]; `coolness` weighs the constant-acceleration heuristic, 0 to 1.
+  /// Of a driver with IDM parameters `p` at `speed` [m/s]; `coolness` weighs the constant-acceleration heuristic, 0
+  /// to 1.
   template <HasIdmParameters P>
   AccLaw(P const& p, double coolness, double speed)
       : terms_(p), comfortable_(p.comfortable_deceleration), coolness_(coolness), speed_(speed) {}
