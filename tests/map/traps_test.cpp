@@ -222,7 +222,7 @@ TEST_CASE("a header without attributes, and words of any revision in any other, 
   }
 }
 
-TEST_CASE("road marks and signals beyond the road's end count for nothing") {
+TEST_CASE("road marks and signals beyond the road's end count for nothing, signs with a finding") {
   auto const mark = [](double s, char const* change) {
     return "<roadMark sOffset=\"" + number(s) + "\" type=\"solid\" laneChange=\"" + change + "\"/>";
   };
@@ -230,7 +230,10 @@ TEST_CASE("road marks and signals beyond the road's end count for nothing") {
       load(one_road(100, geometry(0, 0, 0, 0, 100),
                     section(0, lane(-1, width(0, 3) + mark(0, "both") + mark(130, "none")) + lane(-2, width(0, 3))),
                     "<signals><signal s=\"500\" t=\"-4\" id=\"7\" name=\"\" dynamic=\"no\" orientation=\"+\" "
-                    "type=\"274\"/></signals>"));
+                    "type=\"206\"/></signals>"),
+           false);
+  REQUIRE(loaded.diagnostics.size() == 1);
+  CHECK(to_string(loaded.diagnostics[0]).find("road 1, signal 7: it counts for no lane") != std::string::npos);
   auto const& l = lane_at(loaded, {"1", 0.0, -1});
   CHECK(l.right_changes == std::vector{cambium::map::PathStretch{0.0, l.length()}});
 }
