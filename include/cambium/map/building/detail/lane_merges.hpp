@@ -64,8 +64,13 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
     stations.push_back(lane.station_at(s));
   }
   auto const samples = onto.path.samples();
-  double const joined = onto.path.project(geometry::Point{path.back().x, path.back().y}).s;
-  for (std::size_t i = 1; i < samples.size(); ++i) {  // to where that one ends, which may be ahead
+  auto const reached = [&] { return onto.path.project(geometry::Point{path.back().x, path.back().y}).s; };
+  for (; path.size() > 2 && reached() > onto.length() - 0.05; path.pop_back()) {  // it ends behind that one's end
+    widths.pop_back();
+    stations.pop_back();
+  }
+  double const joined = reached();
+  for (std::size_t i = 1; i < samples.size(); ++i) {  // to where that one ends
     double const s = i < onto.path.segments().size() ? onto.path.segments()[i].s : onto.length();
     if (s < joined + 0.01) continue;
     path.push_back(samples[i]);
