@@ -470,9 +470,7 @@ class Lanelet2Reader {
     for_each_sign(node, [&](std::string_view code) {
       auto const* const known = find_signal_code(code.substr(0, 2), code.size() > 2 ? code.substr(2) : code, "");
       if (known == nullptr) return warn(node, "its sign " + std::string(code) + " is not known; it was left out");
-      if (known->meaning == SignalMeaning::give_way) kind = SignalKind::give_way;
-      if (known->meaning == SignalMeaning::stop) kind = SignalKind::stop;
-      if (known->meaning == SignalMeaning::priority) kind = SignalKind::priority;
+      if (auto const found = kind_of(known->meaning); found && found != SignalKind::light) kind = found;
     });
     return kind;
   }

@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "cambium/map/lanes/signals.hpp"
+
 namespace cambium::map {
 
 /// What a code of a country's catalogue of signs and lights says.
@@ -20,6 +22,25 @@ enum class SignalMeaning : std::uint8_t {
   speed_limit,  ///< whose value is written beside the code
   other,        ///< of no effect on who goes first: lights for others, lines, places, ...
 };
+
+/// The sign or light for lanes that a meaning is; nothing where it does not say who goes first.
+[[nodiscard]] constexpr std::optional<SignalKind> kind_of(SignalMeaning meaning) {
+  switch (meaning) {
+    case SignalMeaning::priority:
+      return SignalKind::priority;
+    case SignalMeaning::give_way:
+      return SignalKind::give_way;
+    case SignalMeaning::stop:
+      return SignalKind::stop;
+    case SignalMeaning::light:
+    case SignalMeaning::bulb:
+      return SignalKind::light;
+    case SignalMeaning::speed_limit:
+    case SignalMeaning::other:
+      break;
+  }
+  return std::nullopt;
+}
 
 /// Which ways an arrow light is for, as bits.
 enum class Arrow : std::uint8_t { none = 0, left = 1, straight = 2, right = 4 };

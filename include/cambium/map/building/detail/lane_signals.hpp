@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -74,11 +73,7 @@ class LaneSignals {
               signal);
       return;
     }
-    std::optional<SignalKind> kind;
-    if (code->meaning == SignalMeaning::priority) kind = SignalKind::priority;
-    if (code->meaning == SignalMeaning::give_way) kind = SignalKind::give_way;
-    if (code->meaning == SignalMeaning::stop) kind = SignalKind::stop;
-    if (code->meaning == SignalMeaning::light || code->meaning == SignalMeaning::bulb) kind = SignalKind::light;
+    auto const kind = kind_of(code->meaning);
     if (!kind) {
       if (code->meaning == SignalMeaning::speed_limit && &signal == &place)
         count("signs that limit the speed do not count; the limits of roads and lanes do", signal, Severity::info);

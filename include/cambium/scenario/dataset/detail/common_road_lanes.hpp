@@ -66,9 +66,7 @@ class CommonRoadLanes : protected CommonRoadValues {
       auto const word = text_of(xml::find_child(element, "trafficSignID"));
       auto const* const code = common_road_sign(traffic_.name, word);
       if (code == nullptr) return warn(element, "its sign " + std::string(word) + " is not known; it was left out");
-      if (code->meaning == map::SignalMeaning::give_way) sign.kind = map::SignalKind::give_way;
-      if (code->meaning == map::SignalMeaning::stop) sign.kind = map::SignalKind::stop;
-      if (code->meaning == map::SignalMeaning::priority) sign.kind = map::SignalKind::priority;
+      if (auto const kind = map::kind_of(code->meaning); kind && kind != map::SignalKind::light) sign.kind = kind;
       if (code->meaning != map::SignalMeaning::speed_limit) return;
       auto const limit = number(element, "additionalValue");
       if (limit && *limit > 0.0 && *limit < 300.0) sign.speed = limit;
