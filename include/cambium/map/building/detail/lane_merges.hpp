@@ -75,7 +75,7 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
     if (s < joined + 0.01) continue;
     path.push_back(samples[i]);
     widths.push_back(widths.back());
-    stations.push_back(stations.back() + 1e-6);
+    stations.push_back(stations.back());
   }
   lane.merges_into = onto.id;
   lane.merge_begin = from;
