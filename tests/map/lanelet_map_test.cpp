@@ -12,6 +12,7 @@
 #include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
 
+#include "../support/map_faults.hpp"
 #include "../support/corpus.hpp"
 #include "../support/error_of.hpp"
 #include "../support/maps.hpp"
@@ -108,13 +109,38 @@ TEST_CASE("lanelets side by side are neighbours, with the marks between them") {
 }
 
 TEST_CASE("a lane that ends beside another merges into it") {
-  auto left = straight(1, {0, 0}, {100, 0}), right = straight(2, {0, -3.5}, {100, -3.5}),
+  auto left = straight(1, {0, 0}, {100, 0}), right = straight(2, {0, -3.5}, {90, -3.5}),
        next = straight(3, {100, 0}, {200, 0});
   left.right_neighbor = 2;
   left.successors = {3};
   auto const made = build_lanelet_map({left, right, next});
   CHECK(lane_of(made, 1).successors == std::vector{made.lanes.at(3)});
   CHECK(lane_of(made, 2).merges_into == made.lanes.at(1));
+  CHECK(map_faults::first_fault(*made.map) == "");
+}
+
+TEST_CASE("a stop line lies before a lanelet's end by the way along it, and is drawn there again") {
+  Lanelet bend{.id = 1};
+  for (int k = 0; k <= 18; ++k) {  // a quarter to the left about (0, 20)
+    double const sin = std::sin(k * cambium::geometry::pi / 36), cos = std::cos(k * cambium::geometry::pi / 36);
+    bend.left.emplace_back(18.0 * sin, 20.0 - 18.0 * cos);
+    bend.right.emplace_back(22.0 * sin, 20.0 - 22.0 * cos);
+  }
+  double const length = 20.0 * cambium::geometry::pi / 2;
+  using cambium::map::distance_before_end, cambium::map::line_before_end;
+  for (double const share : {0.25, 0.5, 1.0}) {
+    double const angle = (1.0 - share) * cambium::geometry::pi / 2;
+    Point const place(20.0 * std::sin(angle), 20.0 - 20.0 * std::cos(angle));
+    double const before = distance_before_end(bend, place);
+    CHECK(before == doctest::Approx(share * length).epsilon(0.002));
+    auto const line = line_before_end(bend, before);
+    CHECK((line[0] - line[1]).norm() == doctest::Approx(4.0).epsilon(0.001));
+    CHECK(distance_before_end(bend, 0.5 * (line[0] + line[1])) == before);
+  }
+  CHECK(distance_before_end(bend, {20.0, 30.0}) == 0.0);  // behind its end
+  CHECK(distance_before_end(bend, {-40.0, 0.0}) == 0.0);  // of another lanelet
+  bend.left.resize(1);
+  CHECK(distance_before_end(bend, {0.0, 0.0}) == 0.0);
 }
 
 TEST_CASE("lanelets that cross are a junction with conflicts, and so is what turns off beside them") {

@@ -350,20 +350,12 @@ class Lanelet2Reader {
   }
 
   /// How far before the lanelet's end the stop line of the element lies [m]: the one of `lines` next to its end.
-  [[nodiscard]] double before_end(Lanelet const& lanelet, std::vector<Point> const& lines) const {
-    Rail const left(evened(lanelet.left)), right(evened(lanelet.right));
-    if (left.points.size() < 2 || right.points.size() < 2) return 0.0;
-    double const length = 0.5 * (left.length() + right.length());
-    Point const end = 0.5 * (left.points.back() + right.points.back()),
-                begin = 0.5 * (left.points.front() + right.points.front());
-    double best = 0.0, nearest = 1e300;
-    for (auto const& line : lines) {
-      double const to_end = (line - end).norm();
-      if (to_end >= nearest) continue;
-      nearest = to_end;
-      best = (line - begin).norm() <= length ? std::min(to_end, length) : 0.0;
-    }
-    return best;
+  [[nodiscard]] static double before_end(Lanelet const& lanelet, std::vector<Point> const& lines) {
+    if (lines.empty() || lanelet.left.empty() || lanelet.right.empty()) return 0.0;
+    Point const end = 0.5 * (lanelet.left.back() + lanelet.right.back());
+    return distance_before_end(
+        lanelet, *std::min_element(lines.begin(), lines.end(),
+                                   [&](auto const& a, auto const& b) { return (a - end).norm() < (b - end).norm(); }));
   }
 
   void read_rule(pugi::xml_node node) {

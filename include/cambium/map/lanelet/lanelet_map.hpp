@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -8,6 +9,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/map.hpp"
 
@@ -30,6 +32,14 @@ struct LaneletMap {
 /// right. Throws `MapError` where no lanelet is left, and as `build_map`. O(n^2) comparisons of boxes for n lanelets.
 [[nodiscard]] LaneletMap build_lanelet_map(std::vector<Lanelet> lanelets, MapOptions const& options = {},
                                            std::string const& file = "lanelets");
+
+/// How far before the lanelet's end `place` lies, along the middle between its bounds [m], to a micrometre: of a stop
+/// line. 0 for what lies behind its end or farther from its begin than it is long, or without usable bounds. O(points).
+[[nodiscard]] double distance_before_end(Lanelet const& lanelet, geometry::Point const& place);
+
+/// The ends, left and right, of a line across the lanelet that far before its end [m]. O(points). Precondition: each
+/// bound has two points that are a centimetre apart.
+[[nodiscard]] std::array<geometry::Point, 2> line_before_end(Lanelet const& lanelet, double distance);
 
 /// The drivable lanes of a map as lanelets, whose ids are those of the lanes plus `first_id`: what a writer of lanelet
 /// formats needs. Linear in the map.

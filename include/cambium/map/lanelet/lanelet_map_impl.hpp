@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -207,6 +208,27 @@ CAMBIUM_COLD LaneletMap build_lanelet_map(std::vector<Lanelet> lanelets, MapOpti
   auto result = detail::LaneletMapMaker(std::move(lanelets), file, diagnostics).make(options);
   result.diagnostics = std::move(diagnostics);
   return result;
+}
+
+CAMBIUM_COLD double distance_before_end(Lanelet const& lanelet, geometry::Point const& place) {
+  if (detail::fault_of_bound(lanelet.left) != nullptr || detail::fault_of_bound(lanelet.right) != nullptr) return 0.0;
+  detail::FacingBounds const bounds(lanelet);
+  if (!((place - bounds.middle(0.0)).norm() <= bounds.length())) return 0.0;
+  double nearest = std::numeric_limits<double>::infinity(), share = 1.0;
+  for (std::size_t i = 0; i + 1 < bounds.shares.size(); ++i) {
+    double const u = bounds.shares[i], v = bounds.shares[i + 1];
+    geometry::Point const from = bounds.middle(u), way = bounds.middle(v) - from;
+    double const along = std::clamp((place - from).dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+    double const away = (place - from - along * way).norm();
+    if (away < nearest) std::tie(nearest, share) = std::pair(away, u + along * (v - u));
+  }
+  return std::round((1.0 - share) * bounds.length() * 1e6) * 1e-6;
+}
+
+CAMBIUM_COLD std::array<geometry::Point, 2> line_before_end(Lanelet const& lanelet, double distance) {
+  detail::FacingBounds const bounds(lanelet);
+  double const share = std::clamp(1.0 - distance / bounds.length(), 0.0, 1.0);
+  return {bounds.left.at(share), bounds.right.at(share)};
 }
 
 CAMBIUM_COLD std::vector<Lanelet> lanelets_of(Map const& map, std::int64_t first_id) {

@@ -179,17 +179,10 @@ class CommonRoadWriter {
   /// Across the lanelet, where its signals count; nothing where that is its end.
   void write_stop_line(map::Lanelet const& lanelet) {
     if (lanelet.signals.empty() || !(lanelet.signals.front().before_end > 0.0)) return;
-    double const before = lanelet.signals.front().before_end;
-    auto const back = [before](std::vector<geometry::Point> const& bound) {
-      auto at = bound.size() - 1;
-      double left = before;
-      for (; at > 1 && (bound[at] - bound[at - 1]).norm() < left; --at) left -= (bound[at] - bound[at - 1]).norm();
-      auto const way = bound[at - 1] - bound[at];
-      return bound[at] + way * std::min(1.0, left / std::max(way.norm(), 1e-9));
-    };
+    auto const line = map::line_before_end(lanelet, lanelet.signals.front().before_end);
     text_.element("stopLine", [&] {
-      point(back(lanelet.left));
-      point(back(lanelet.right));
+      point(line[0]);
+      point(line[1]);
       leaf("lineMarking", "solid");
     });
   }

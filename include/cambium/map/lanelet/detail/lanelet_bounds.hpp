@@ -68,21 +68,40 @@ struct Rail {
   return geometry::twice_area(ring);
 }
 
+/// Why a bound cannot be used; null where it can.
+[[nodiscard]] inline char const* fault_of_bound(std::span<Point const> bound) {
+  constexpr double farthest = 1e8;  // [m]
+  for (auto const& p : bound)
+    if (!(std::abs(p.x()) <= farthest && std::abs(p.y()) <= farthest)) return "a point is no finite place in metres";
+  return evened(bound).size() < 2 ? "a bound has fewer than two points that are a centimetre apart" : nullptr;
+}
+
 /// Why bounds cannot be used; null where they can. Bounds that lie on the wrong sides are exchanged, which `swapped`
 /// reports.
 [[nodiscard]] inline char const* fault_of_bounds(Lanelet& lanelet, bool& swapped) {
-  constexpr double farthest = 1e8;  // [m]
-  for (auto* bound : {&lanelet.left, &lanelet.right}) {
-    for (auto const& p : *bound)
-      if (!(std::abs(p.x()) <= farthest && std::abs(p.y()) <= farthest)) return "a point is no finite place in metres";
-    if (evened(*bound).size() < 2) return "a bound has fewer than two points that are a centimetre apart";
-  }
+  for (auto const* bound : {&lanelet.left, &lanelet.right})
+    if (auto const* const fault = fault_of_bound(*bound)) return fault;
   double const twice_area = twice_area_between(lanelet.left, lanelet.right);
   if (!(std::abs(twice_area) > 0.02)) return "there is no room between its bounds";
   swapped = twice_area > 0.0;
   if (swapped) std::swap(lanelet.left, lanelet.right);
   return nullptr;
 }
+
+/// The bounds as points of equal shares of their lengths face each other.
+struct FacingBounds {
+  explicit FacingBounds(Lanelet const& lanelet) : left(evened(lanelet.left)), right(evened(lanelet.right)) {
+    for (auto const* rail : {&left, &right})
+      for (double const s : rail->s) shares.push_back(s / rail->length());
+    std::sort(shares.begin(), shares.end());
+  }
+
+  [[nodiscard]] Point middle(double u) const { return 0.5 * (left.at(u) + right.at(u)); }
+  [[nodiscard]] double length() const { return 0.5 * (left.length() + right.length()); }
+
+  Rail left, right;
+  std::vector<double> shares{0.0, 1.0};  ///< of all corners of the bounds, sorted: between them the middle is straight
+};
 
 /// Places on the middle between the bounds: the begin, the middle of each straight piece, the end; with the direction
 /// of the way there, and what lies beside it. A curve that has these directions there turns no more than the pieces do.
@@ -93,18 +112,14 @@ struct LaneletCenter {
   std::vector<SideWidths> widths;
 };
 
-/// Points of equal shares of both bounds face each other: so the middle goes forwards wherever the directions of the
-/// bounds there are less than half a turn apart. Precondition: `fault_of_bounds` finds none.
+/// The middle between facing points goes forwards wherever the directions of the bounds there are less than half a turn
+/// apart. Precondition: `fault_of_bounds` finds none.
 [[nodiscard]] inline LaneletCenter center_of(Lanelet const& lanelet) {
   constexpr double shortest = 0.25;  // [m] of a straight piece
-  Rail const left(evened(lanelet.left)), right(evened(lanelet.right));
-  std::vector<double> shares{0.0, 1.0};
-  for (auto const* rail : {&left, &right})
-    for (double const s : rail->s) shares.push_back(s / rail->length());
-  std::sort(shares.begin(), shares.end());
+  FacingBounds const bounds(lanelet);
   std::vector<double> corners;
-  auto const middle = [&](double u) { return 0.5 * (left.at(u) + right.at(u)); };
-  for (double const u : shares)
+  auto const middle = [&](double u) { return bounds.middle(u); };
+  for (double const u : bounds.shares)
     if (corners.empty() || (middle(u) - middle(corners.back())).norm() >= shortest) corners.push_back(u);
   if (corners.size() > 1 && (middle(1.0) - middle(corners.back())).norm() < shortest) corners.pop_back();
   if (middle(1.0) != middle(corners.back())) corners.push_back(1.0);
@@ -114,8 +129,8 @@ struct LaneletCenter {
     auto const add = [&](double u, Point const& p) {
       center.points.push_back(p);
       center.headings.push_back(std::atan2(way.y(), way.x()));
-      center.left.push_back(left.at(u));
-      center.right.push_back(right.at(u));
+      center.left.push_back(bounds.left.at(u));
+      center.right.push_back(bounds.right.at(u));
       Point const across = center.left.back() - center.right.back();
       double const half = 0.5 * std::max(0.0, across.y() * way.x() - across.x() * way.y());
       center.widths.push_back({half, half});

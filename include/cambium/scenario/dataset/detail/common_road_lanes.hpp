@@ -158,10 +158,7 @@ class CommonRoadLanes : protected CommonRoadValues {
     xml::for_each_child(node, "point", [&](Node child) {
       if (auto const p = point(child)) ends.push_back(*p);
     });
-    double before = 0.0;
-    if (ends.size() == 2 && !lanelet.left.empty() && !lanelet.right.empty())
-      before = (0.5 * (ends[0] + ends[1]) - 0.5 * (lanelet.left.back() + lanelet.right.back())).norm();
-    if (!(before >= 0.0 && before <= 1000.0)) before = 0.0;
+    double const before = ends.size() == 2 ? map::distance_before_end(lanelet, 0.5 * (ends[0] + ends[1])) : 0.0;
     xml::for_each_child(node, [&](Node child, std::string_view name) {
       if (name != "trafficSignRef" && name != "trafficLightRef") return;
       if (auto const ref = reference(child)) add_signal(child, *ref, before, lanelet);
