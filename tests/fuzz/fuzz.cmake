@@ -1,6 +1,6 @@
-# The fuzzer of the OpenDRIVE reader, where there is a clang with its fuzzing and sanitizer libraries. A target outside
-# `all`; its ctest builds it and runs it for a short while, with a fixed seed. Elsewhere the test is skipped.
-left_to_all(fuzz.opendrive "needs a build with sanitizers; here damaged files in map")
+# The fuzzers of the readers of maps, where there is a clang with its fuzzing and sanitizer libraries. Targets outside
+# `all`; their ctests build them and run them for a short while, with a fixed seed. Elsewhere the tests are skipped.
+left_to_all("fuzz.*" "need a build with sanitizers; here damaged files in map")
 if(CAMBIUM_QUICK_TESTS)
   return()
 endif()
@@ -29,22 +29,28 @@ if(NOT DEFINED CAMBIUM_FUZZING_CLANG)  # the first that has its libraries
   set(CAMBIUM_FUZZING_CLANG "${found}" CACHE INTERNAL "a clang that makes programs that fuzz; empty: there is none")
 endif()
 
-if(CAMBIUM_FUZZING_CLANG AND CAMBIUM_FUZZ_PUGIXML)
-  set(fuzzer ${CMAKE_CURRENT_BINARY_DIR}/fuzz/opendrive_fuzz)
-  file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found)  # what is new goes there
+# add_fuzzer(NAME MAX_LENGTH): of NAME_fuzz.cpp, from the texts in NAME_seeds.
+function(add_fuzzer name max_length)
+  if(NOT (CAMBIUM_FUZZING_CLANG AND CAMBIUM_FUZZ_PUGIXML))
+    add_test(NAME fuzz.${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: no clang with libFuzzer and sanitizers here")
+    set_tests_properties(fuzz.${name} PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
+    return()
+  endif()
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/fuzz)
+  set(fuzzer ${folder}/${name}_fuzz)
+  file(MAKE_DIRECTORY ${folder}/${name}_found)  # what is new goes there
   # Another compiler than the project's, perhaps: so a command instead of a target of the project's own.
   add_custom_command(OUTPUT ${fuzzer}
     COMMAND ${CAMBIUM_FUZZING_CLANG} ${fuzz_flags} @${compile_flags} ${CAMBIUM_WARNINGS} -Werror -MMD -MT ${fuzzer}
-      -MF ${fuzzer}.d ${fuzz_source}/opendrive_fuzz.cpp ${CAMBIUM_FUZZ_PUGIXML} -o ${fuzzer}
-    DEPENDS ${fuzz_source}/opendrive_fuzz.cpp ${compile_flags} DEPFILE ${fuzzer}.d
-    COMMENT "opendrive_fuzz" VERBATIM)
-  add_custom_target(opendrive_fuzz DEPENDS ${fuzzer})
-  add_build_test(fuzz.build opendrive_fuzz)
-  set_tests_properties(fuzz.build PROPERTIES FIXTURES_SETUP opendrive_fuzz)
-  add_timed_test(fuzz.opendrive ${fuzzer} -max_len=6000 -seed=1 -runs=4000 -max_total_time=30 -timeout=20 -rss_limit_mb=4096
-      -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/fuzz/ ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found ${fuzz_source}/seeds)
-  set_tests_properties(fuzz.opendrive PROPERTIES FIXTURES_REQUIRED opendrive_fuzz)
-else()
-  add_test(NAME fuzz.opendrive COMMAND ${CMAKE_COMMAND} -E echo "skipped: no clang with libFuzzer and sanitizers here")
-  set_tests_properties(fuzz.opendrive PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
-endif()
+      -MF ${fuzzer}.d ${fuzz_source}/${name}_fuzz.cpp ${CAMBIUM_FUZZ_PUGIXML} -o ${fuzzer}
+    DEPENDS ${fuzz_source}/${name}_fuzz.cpp ${compile_flags} DEPFILE ${fuzzer}.d
+    COMMENT "${name}_fuzz" VERBATIM)
+  add_custom_target(${name}_fuzz DEPENDS ${fuzzer})
+  add_build_test(fuzz.${name}.build ${name}_fuzz)
+  set_tests_properties(fuzz.${name}.build PROPERTIES FIXTURES_SETUP ${name}_fuzz)
+  add_timed_test(fuzz.${name} ${fuzzer} -max_len=${max_length} -seed=1 -runs=4000 -max_total_time=30 -timeout=20
+      -rss_limit_mb=4096 -artifact_prefix=${folder}/ ${folder}/${name}_found ${fuzz_source}/${name}_seeds)
+  set_tests_properties(fuzz.${name} PROPERTIES FIXTURES_REQUIRED ${name}_fuzz)
+endfunction()
+add_fuzzer(opendrive 6000)
+add_fuzzer(lanelet 12000)

@@ -48,19 +48,14 @@ inline std::string text_of(pugi::xml_node root) {
   return text.str();
 }
 
-/// Another value for an attribute: odd words, a number near the present one, or what another element has there.
-inline std::string other_value(pugi::xml_attribute attribute, std::vector<pugi::xml_node> const& elements,
-                               cambium::RandomStream& random) {
+/// Another value for `value`: an odd word, or a number near it.
+inline std::string other_value(char const* value, cambium::RandomStream& random) {
   static char const* const values[] = {"0",      "-1",  "1",      "-3.5",  "0.5",  "1e-9", "1e300",
                                        "-1e300", "1e7", "-1e7",   "100",   "-100", "1000", "nan",
                                        "-nan",   "inf", "-inf",   "",      "many", "1,5",  "1e999",
                                        "2",      "-2",  "1e-300", "3.7 m", "1e4",  "1e5",  "99999999999999999999"};
-  auto const kind = any_of(4, random);
-  if (kind == 0)
-    if (auto const other = elements[any_of(elements.size(), random)].attribute(attribute.name())) return other.value();
-  if (kind != 1) return values[any_of(std::size(values), random)];
-  auto const number = cambium::map::detail::parse_number<double>(attribute.value());
-  if (!number) return values[any_of(std::size(values), random)];
+  auto const number = cambium::map::detail::parse_number<double>(value);
+  if (any_of(3, random) != 0 || !number) return values[any_of(std::size(values), random)];
   double const changed[] = {-*number,       *number * 10,   *number / 10,   *number + 1,
                             *number - 1e-3, *number + 1e-9, *number * 1.01, *number - 10};
   char text[40];
@@ -94,9 +89,17 @@ inline std::string damage_once(pugi::xml_document& xml, cambium::RandomStream& r
     return "renamed " + name + " " + other.name() + "; ";
   }
   auto const count = static_cast<std::size_t>(std::distance(element.attributes_begin(), element.attributes_end()));
-  if (count == 0) return "";
+  if (count == 0) {
+    auto text = element.text();
+    if (text.empty()) return "";
+    std::string const before = text.get();
+    std::string const value = any_of(4, random) == 0 ? other.text().get() : other_value(before.c_str(), random);
+    text.set(value.c_str());
+    return name + " " + before + " -> " + value + "; ";
+  }
   auto attribute = *std::next(element.attributes_begin(), static_cast<std::ptrdiff_t>(any_of(count, random)));
-  auto const value = other_value(attribute, elements, random);
+  auto const elsewhere = elements[any_of(elements.size(), random)].attribute(attribute.name());
+  auto const value = any_of(4, random) == 0 && elsewhere ? elsewhere.value() : other_value(attribute.value(), random);
   auto const what = name + "@" + attribute.name() + " " + attribute.value() + " -> " + value + "; ";
   if (any_of(20, random) == 0)
     element.remove_attribute(attribute);
