@@ -3,6 +3,7 @@
 #include <cambium/benchmark/detail/job_process.hpp>
 #include <cambium/benchmark/detail/outcome_bytes.hpp>
 #include <cambium/benchmark/result_store.hpp>
+#include <cambium/benchmark/run_on_ranks.hpp>
 #include <cambium/core/error.hpp>
 #include <doctest/doctest.h>
 
@@ -11,10 +12,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <limits>
+#include <memory>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <vector>
 
 #include "../examples/program.hpp"
 #include "stored.hpp"
@@ -29,6 +38,58 @@ JobOutcome outcome_in(detail::JobProcess& process, std::size_t job) {
   for (;;)
     if (auto const bytes = process.wait(100)) return detail::read_outcome(*bytes);
 }
+
+/// Ranks that are threads of this program, with the members of a boost::mpi::communicator that are used.
+class ThreadRanks {
+  struct Letter {
+    int from, kind;
+    std::string bytes;
+    [[nodiscard]] int source() const { return from; }
+    [[nodiscard]] int tag() const { return kind; }
+    template <class T>
+    [[nodiscard]] std::optional<int> count() const {
+      return static_cast<int>(bytes.size() / sizeof(T));
+    }
+  };
+  struct Post {
+    explicit Post(int size) : boxes(static_cast<std::size_t>(size)) {}
+    std::mutex door{};
+    std::vector<std::deque<Letter>> boxes;
+    std::optional<int> aborted{};
+  };
+
+ public:
+  explicit ThreadRanks(int size) : post_(std::make_shared<Post>(size)) {}
+  [[nodiscard]] ThreadRanks of(int rank) const {
+    auto other = *this;
+    other.rank_ = rank;
+    return other;
+  }
+
+  [[nodiscard]] int rank() const { return rank_; }
+  [[nodiscard]] int size() const { return static_cast<int>(post_->boxes.size()); }
+  [[nodiscard]] std::optional<Letter> iprobe() const {
+    std::lock_guard const lock(post_->door);
+    return box(rank_).empty() ? std::nullopt : std::optional(box(rank_).front());
+  }
+  void recv(int, int, char* bytes, int) const {
+    std::lock_guard const lock(post_->door);
+    std::ranges::copy(box(rank_).front().bytes, bytes);
+    box(rank_).pop_front();
+  }
+  void send(int to, int kind, char const* bytes, int count) const {
+    std::lock_guard const lock(post_->door);
+    box(to).push_back({rank_, kind, std::string(bytes, static_cast<std::size_t>(count))});
+  }
+  void abort(int code) const { post_->aborted = code; }
+  [[nodiscard]] std::optional<int> aborted() const { return post_->aborted; }
+
+ private:
+  [[nodiscard]] std::deque<Letter>& box(int rank) const { return post_->boxes[static_cast<std::size_t>(rank)]; }
+
+  std::shared_ptr<Post> post_;
+  int rank_ = 0;
+};
 
 #ifdef CAMBIUM_MPIEXEC
 std::size_t lines_in(std::string const& text) {
@@ -109,6 +170,51 @@ TEST_CASE("a job that kills its process is an error, and the next one runs") {
   CHECK(last.result.steps == 4);
   CHECK(last.replay.size() == 4'000'000);
   process.start(1);  // and is ended in the middle
+}
+
+TEST_CASE("each job is taken once, in every call, also where one rank of four takes some and is never heard of again") {
+  ThreadRanks const ranks(4);
+  std::vector<std::string> warnings;
+  RankOptions const options{.patience = 0.3, .warn = [&](auto const& sentence) { warnings.push_back(sentence); }};
+  auto const run = [](std::size_t job) {
+    JobOutcome outcome;
+    outcome.result.steps = static_cast<std::int64_t>(10 * job);
+    return outcome;
+  };
+  std::vector<std::size_t> jobs(40);
+  std::iota(jobs.begin(), jobs.end(), 0u);
+  std::vector<std::thread> workers;
+  for (int const rank : {1, 3})
+    workers.emplace_back([&, rank] {
+      auto const worker = on_ranks(ranks.of(rank), options);
+      CHECK(worker.is_worker);
+      for (int call = 0; call < 2; ++call) worker.execute(jobs, run, {}, 60.0);
+    });
+  detail::send(ranks.of(2), 0, detail::alive_message, 1);  // its last word
+  auto const first = on_ranks(ranks.of(0), options);
+  CHECK_FALSE(first.is_worker);
+  CHECK(first.name == "3 ranks");
+  for (int call = 0; call < 2; ++call) {
+    std::multiset<std::size_t> taken;
+    first.execute(
+        jobs, run,
+        [&](std::size_t job, JobOutcome const& outcome) {
+          taken.insert(job);
+          CHECK(outcome.result.steps == static_cast<std::int64_t>(10 * job));
+        },
+        60.0);
+    CHECK(taken == std::multiset<std::size_t>(jobs.begin(), jobs.end()));
+  }
+  for (auto& worker : workers) worker.join();
+  REQUIRE(!warnings.empty());
+  CHECK(warnings.front() == "rank 2 has not been heard from for 0.3 s: others take its jobs");
+
+  CHECK(detail::end_program(ranks, 0, false) == 0);
+  CHECK_FALSE(ranks.aborted());
+  CHECK(detail::end_program(ranks, 2, false) == 2);
+  CHECK(ranks.aborted() == 2);
+  CHECK(detail::end_program(ranks, 0, true) == 0);
+  CHECK(ranks.aborted() == 0);
 }
 
 TEST_CASE("3 ranks give the rows of 1 thread and 8 threads, and a job that crashes costs itself only") {

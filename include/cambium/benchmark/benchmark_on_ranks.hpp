@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdio>
-#include <iostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,12 +28,7 @@ int benchmark_on_ranks(Communicator const& ranks, int argc, char const* const* a
     if (warn) warn(sentence);
   };
   defaults.executor = on_ranks(ranks, std::move(options));
-  int const code = benchmark_main(argc, argv, contenders, defaults);
-  if (code == 0 && !is_lost) return 0;
-  std::cout.flush();
-  std::fflush(nullptr);
-  ranks.abort(code);
-  return code;
+  return detail::end_program(ranks, benchmark_main(argc, argv, contenders, defaults), is_lost);
 }
 
 }  // namespace cambium

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <deque>
 #include <functional>
 #include <iostream>
@@ -24,7 +25,8 @@
 
 /// A benchmark on the ranks of an MPI program: rank 0 has the store and hands out jobs, the others run them, each in a
 /// forked process. For POSIX systems. This header includes nothing of MPI: `Communicator` is a boost::mpi::communicator
-/// (link cambium::mpi), or has its members rank, size, iprobe, recv and send.
+/// (link cambium::mpi), or has its members rank, size, iprobe, recv and send
+/// (and abort, for `benchmark_on_ranks`).
 namespace cambium {
 
 /// How long ranks wait for each other.
@@ -197,6 +199,16 @@ void work_for_rank_0(Communicator const& ranks, RankOptions const& options, std:
     if (auto const outcome = process.wait(1)) send(ranks, 0, outcome_message, session, process.job(), *outcome);
     if (is_time()) send(ranks, 0, alive_message, session);
   }
+}
+
+/// The exit code of a rank; not reached where others have to be ended, too.
+template <class Communicator>
+int end_program(Communicator const& ranks, int code, bool is_lost) {
+  if (code == 0 && !is_lost) return 0;
+  std::cout.flush();
+  std::fflush(nullptr);
+  ranks.abort(code);
+  return code;
 }
 
 }  // namespace detail
