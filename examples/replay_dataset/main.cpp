@@ -127,13 +127,13 @@ Outcome run(cb::RecordedScenario<Sim> const& recorded, Settings const& settings,
                           (is_valid(pair->second) ? to_string(pair->second) : std::string("an obstacle"));
     outcome.displacements.observe(world, settings.step);
     note();
-    if (problem != nullptr && world.roster().slot_of(ego))
+    if (problem != nullptr && outcome.collision.empty() && world.roster().slot_of(ego))
       outcome.solved = cb::AtGoal{}(world, world.slot_of(ego)) && std::ranges::any_of(problem->goals, is_in_time);
   }
   return outcome;
 }
 
-void replay(cb::RecordedTraffic const& traffic, Settings const& settings) {
+void replay(cb::RecordedTraffic const& traffic, Settings settings) {
   auto const all = windows(traffic, settings);
   if (settings.lists) return list(traffic, all);
   if (settings.window >= all.size())
@@ -153,6 +153,7 @@ void replay(cb::RecordedTraffic const& traffic, Settings const& settings) {
   bool const solves = !settings.solution.empty();
   if (solves && traffic.problems.empty())
     throw cb::Error("--solution", "the file has no planning problem", "give a CommonRoad scenario that has one");
+  if (solves) settings.step = traffic.time_step;  // a solution has a state for each of the file's
   auto const recorded =
       solves ? problem_scenario<Sim>(traffic, traffic.problems.front(), driver(settings.driver), behavior_of)
              : recorded_scenario<Sim>(traffic, window, behavior_of);
@@ -187,15 +188,16 @@ void replay(cb::RecordedTraffic const& traffic, Settings const& settings) {
   std::printf("  %s plays it in a browser\n", page.string().c_str());
   if (!solves) return;
   if (!outcome.solved)
-    return static_cast<void>(std::printf("  the goal was not reached in time: there is no solution\n"));
+    return static_cast<void>(
+        std::printf("  the goal was not reached in time and without a collision: there is no "
+                    "solution\n"));
   auto const shape = cb::geometry::car();
   cb::CommonRoadSolution solution{.benchmark_id = traffic.name,
                                   .problem = traffic.problems.front().id,
                                   .time_step = settings.step,
                                   .states = std::move(outcome.ego)};
   for (auto& state : solution.states) {
-    state.x += shape.center_offset() * std::cos(state.heading);
-    state.y += shape.center_offset() * std::sin(state.heading);
+    state = middle_state(state, shape);
     state.time += recorded.begin;
   }
   cb::write_file(settings.solution, common_road_solution_text(solution));
@@ -235,7 +237,7 @@ int main(int argc, char** argv) {
   program.add_option("--driver", settings.driver, "idm, mobil or intersection")
       ->check(CLI::IsMember({"idm", "mobil", "intersection"}))
       ->capture_default_str();
-  program.add_option("--step", settings.step, "time step [s]")
+  program.add_option("--step", settings.step, "time step [s]; with --solution that of the file")
       ->check(examples::number(0.01, 1.0))
       ->capture_default_str();
   program

@@ -197,6 +197,10 @@ TEST_CASE("a list whose elements repeat may be long, but not endless") {
   Reader const reader{std::make_shared<std::vector<double> const>(500)};
   check(One<std::vector<Book>>{{Book{}, Book{}}});
   check(One<std::vector<Reader>>{{reader, reader}});
+  One<std::vector<float>> const endless{std::vector<float>((std::size_t{1} << 24) + 1)};
+  CHECK_THROWS_WITH_AS(static_cast<void>(to_binary(endless)),
+                       doctest::Contains("a list has 16777217 elements; split it: a file holds at most 16777216"),
+                       ParameterError);
 }
 
 TEST_CASE("a list of fixed length takes neither more nor fewer elements") {

@@ -356,6 +356,25 @@ TEST_CASE("relative places are those of the lanes, in bends too") {
   }
 }
 
+TEST_CASE("who drives on the lane before or after one's own is as far away as it takes to drive there") {
+  auto const map = support::own_map("merging.xodr");
+  int pairs = 0;
+  for (auto const& lane : map->lanes()) {
+    if (!lane.drivable() || lane.successors.size() != 1 || is_valid(lane.merges_into)) continue;
+    Sim world(map);
+    auto const ahead = world.slot_of(add_on(world, lane.id, lane.length() - 5, 20, ConstantAcceleration{}));
+    REQUIRE(world.step(1.0));  // to the next lane
+    auto const behind = world.slot_of(add_on(world, lane.id, lane.length() - 20, 20, ConstantAcceleration{}));
+    auto const there = relative_place(world, behind, ahead), back = relative_place(world, ahead, behind);
+    REQUIRE(there);
+    REQUIRE(back);
+    CHECK(there->way == doctest::Approx(35.0).epsilon(0.01));
+    CHECK(back->way == doctest::Approx(-35.0).epsilon(0.01));
+    ++pairs;
+  }
+  CHECK(pairs > 1);
+}
+
 TEST_CASE("from the safe distance on, braking avoids the collision, and from a little less it does not") {
   int interior = 0;
   for (std::uint32_t number = 0; number < 2000; ++number) {

@@ -50,10 +50,11 @@ struct Errors {
   double across = 0.0, along = 0.0, last_across = 0.0;
 };
 
-/// Follows `course` in steps of `dt`, `samples` states a plan, and tells the largest distances from it.
+/// Follows `course` in steps of `dt`, `samples` states a step, and tells the largest distances from it. A plan reaches
+/// `steps_ahead` steps.
 template <class Execution, class Dynamics, class Course>
 Errors follow(Execution const& execution, Dynamics const& dynamics, Course const& course, double duration,
-              double offset = 0.0, double dt = 0.2, int samples = 2) {
+              double offset = 0.0, double dt = 0.2, int samples = 2, int steps_ahead = 1) {
   using State = typename Dynamics::State;
   State x = course(0.0);
   x.y += offset;
@@ -62,7 +63,8 @@ Errors follow(Execution const& execution, Dynamics const& dynamics, Course const
   for (int step = 0; step * dt < duration; ++step) {
     cb::BasicPlan<State> plan;
     double const from = step * dt;
-    for (int k = step == 0 ? 0 : 1; k <= samples; ++k) plan.trajectory.push_back(course(from + dt * k / samples));
+    for (int k = step == 0 ? 0 : 1; k <= samples * steps_ahead; ++k)
+      plan.trajectory.push_back(course(from + dt * k / samples));
     cb::RandomStream random(3, 1, static_cast<std::uint32_t>(step));
     auto const executed = execution.execute(plan, x, dynamics, from + dt, memory, random);
     REQUIRE(executed.valid);
@@ -110,6 +112,10 @@ TEST_CASE_TEMPLATE("a lane change is tracked to a few centimetres", Execution, c
   // However coarse the plan.
   CHECK(follow(Execution{}, cb::SingleTrack{}, lane_change<cb::State>, 8.0, 0.0, 0.2, 1).across < 0.06);
   CHECK(follow(Execution{}, cb::SingleTrack{}, lane_change<cb::State>, 8.0, 0.0, 0.5, 10).across < 0.06);
+  // However far it reaches.
+  auto const far = follow(Execution{}, cb::SingleTrack{}, lane_change<cb::State>, 8.0, 0.0, 0.2, 2, 4);
+  CHECK(far.across == doctest::Approx(errors.across).epsilon(0.1));
+  CHECK(far.along == doctest::Approx(errors.along).epsilon(0.1));
 }
 
 TEST_CASE_TEMPLATE("in a bend there is no lasting error, and a start beside the plan comes to it", Execution,

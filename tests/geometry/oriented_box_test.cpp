@@ -63,4 +63,5 @@ TEST_CASE("axis-parallel boxes count their borders") {
   CHECK(!box.intersects(Box{2.1, 0.0, 3.0, 3.0}));
   CHECK(box.contains(Box{0.0, 0.5, 1.0, 1.0}));
   CHECK(!box.contains(Box{0.0, 0.5, 1.0, 1.5}));
+  CHECK(Box{1.0, 2.0, 5.0, 8.0}.center() == Point{3.0, 5.0});
 }

@@ -231,6 +231,13 @@ struct NeverAgain {
   bool at_goal(cb::GoalSituation const& at) const { return at.pose.x > 150.0; }
 };
 
+/// One that compares itself.
+struct Beyond {
+  double x = 0.0;
+  bool at_goal(cb::GoalSituation const& at) const { return at.pose.x > x; }
+  friend bool operator==(Beyond const&, Beyond const&) = default;
+};
+
 }  // namespace
 
 TEST_CASE("a user's own goal is reached as its function says, alone and as a part of others") {
@@ -291,6 +298,8 @@ TEST_CASE("a user's own goal is checked by its description and its own check, co
   CHECK_FALSE(goal == other);
   CHECK_FALSE(goal == bare);
   CHECK(bare == cb::OwnGoal(NeverAgain{}));
+  CHECK(cb::OwnGoal(Beyond{5.0}) == cb::OwnGoal(Beyond{5.0}));
+  CHECK_FALSE(cb::OwnGoal(Beyond{5.0}) == cb::OwnGoal(Beyond{6.0}));
   REQUIRE(goal.get<PassFast>() != nullptr);
   CHECK(goal.get<PassFast>()->x == 5.0);
   CHECK(goal.get<NeverAgain>() == nullptr);

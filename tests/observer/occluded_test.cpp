@@ -169,6 +169,15 @@ TEST_CASE("intervals and rays hide the same agents") {
   CHECK(compare({.range = 20.0, .resolution = 0.01}).seen < usual.seen);
 }
 
+TEST_CASE("who stands over the eye hides nothing, and the next one does") {
+  Plane plane;
+  for (double const x : {0.0, 0.0, 30.0, 60.0}) plane.states.push_back({0, x, 0, 0, 0});
+  plane.shapes = {cb::geometry::car(), cb::geometry::car(), cb::geometry::truck(), cb::geometry::car()};
+  cb::OccludedObserver const observer;
+  CHECK(observer.sees(plane, cb::Slot{0}, cb::Slot{2}));
+  CHECK_FALSE(observer.sees(plane, cb::Slot{0}, cb::Slot{3}));
+}
+
 TEST_CASE("vehicles behind a truck are hidden, and the next visible one is the neighbour") {
   Observed<cb::OccludedObserver> world(straight_road(2, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
