@@ -21,9 +21,12 @@
 #include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/make_roads.hpp"
 #include "cambium/map/building/map_builder.hpp"
+#include "cambium/map/lanelet/lanelet2.hpp"
+#include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/lanes/road_lanes.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/writer.hpp"
+#include "cambium/scenario/dataset/common_road.hpp"
 
 #include "yardstick/main.hpp"
 
@@ -44,10 +47,13 @@ std::vector<fs::path> files() {
   char const* const named = std::getenv("CAMBIUM_CORPUS");
   fs::path const corpus = named != nullptr ? fs::path(named) : fs::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
   std::vector<fs::path> files;
-  for (auto const& folder : {fs::path(CAMBIUM_SOURCE_DIR) / "maps", corpus / "opendrive"}) {
+  for (auto const& folder : {fs::path(CAMBIUM_SOURCE_DIR) / "maps", corpus / "opendrive", corpus / "lanelet2",
+                             corpus / "scenarios" / "commonroad"}) {
     std::error_code absent;
-    for (auto const& entry : fs::directory_iterator(folder, absent))
-      if (entry.path().extension() == ".xodr") files.push_back(entry.path());
+    for (auto const& entry : fs::directory_iterator(folder, absent)) {
+      auto const kind = entry.path().extension();
+      if (kind == ".xodr" || kind == ".osm" || kind == ".xml") files.push_back(entry.path());
+    }
   }
   std::sort(files.begin(), files.end(), [](auto const& a, auto const& b) { return a.stem() < b.stem(); });
   return files;
@@ -69,13 +75,30 @@ std::size_t run_stages(std::string const& text, std::string const& name, Stage l
   return diagnostics.size();
 }
 
-void register_loading(std::string const& stem, std::shared_ptr<std::string const> const& text) {
+void register_xml(std::string const& stem, std::shared_ptr<std::string const> const& text) {
   yardstick::add("map/xml/" + stem, [text](benchmark::State& state) {
     yardstick::measure_duration(state, [&] {
       pugi::xml_document xml;
       benchmark::DoNotOptimize(xml.load_buffer(text->data(), text->size()).status);
     });
   });
+}
+
+/// Files of lanelets, with their tracks where they have any.
+void register_lanelets(fs::path const& file, std::shared_ptr<std::string const> const& text) {
+  register_xml(file.stem().string(), text);
+  yardstick::add("map/world_ready/" + file.stem().string(), [file, text](benchmark::State& state) {
+    yardstick::measure_duration(state, [&] {
+      if (file.extension() == ".xml") return benchmark::DoNotOptimize(cb::parse_common_road(*text).map.get());
+      std::vector<cb::Diagnostic> diagnostics;
+      auto lanelets = cb::map::read_lanelet2(*text, {}, file.string(), diagnostics);
+      benchmark::DoNotOptimize(cb::map::build_lanelet_map(std::move(lanelets)).map.get());
+    });
+  });
+}
+
+void register_loading(std::string const& stem, std::shared_ptr<std::string const> const& text) {
+  register_xml(stem, text);
   for (auto const& [kind, stage] :
        {std::pair("map/read/", Stage::read), {"map/sampled/", Stage::sampled}, {"map/linked/", Stage::linked}})
     yardstick::add(kind + stem, [text, stem, last = stage](benchmark::State& state) {
@@ -181,6 +204,8 @@ void print_ratios(yardstick::Results const& results) {
   };
   row("map/read/Town04", "map/xml/Town04");
   row("map/world_ready/Town04", "map/xml/Town04");
+  for (std::string const lanelets : {"mapping_example", "autoware_intersection", "ZAM_Tjunction-1_42_T-1"})
+    row(("map/world_ready/" + lanelets).c_str(), ("map/xml/" + lanelets).c_str());
   row("map/world_ready/3000_geometries", "map/world_ready/1000_geometries");
 }
 
@@ -190,6 +215,10 @@ int main(int argc, char** argv) {
   std::shared_ptr<std::string const> asked;
   for (auto const& file : files()) {
     auto const text = std::make_shared<std::string const>(read(file));
+    if (file.extension() != ".xodr") {
+      register_lanelets(file, text);
+      continue;
+    }
     register_loading(file.stem().string(), text);
     if (!asked || file.stem() == "Town04") asked = text;  // any map where the corpus is not there
   }

@@ -47,6 +47,22 @@ inline void check_piece(CurvePiece const& piece) {
   return g;
 }
 
+/// Whether the way from one pose to the other turns by less than a millionth at either end.
+[[nodiscard]] inline bool is_straight(geometry::Pose const& from, geometry::Pose const& to) {
+  double const direction = std::atan2(to.y - from.y, to.x - from.x);
+  auto const turns = [&](double heading) { return std::abs(geometry::angle_difference(heading, direction)) > 1e-6; };
+  return !turns(from.heading) && !turns(to.heading);
+}
+
+/// Straight from one place to the other.
+[[nodiscard]] inline Geometry make_line(geometry::Pose const& from, geometry::Pose const& to) {
+  double const dx = to.x - from.x, dy = to.y - from.y;
+  return {.x = round_length(from.x),
+          .y = round_length(from.y),
+          .heading = round_angle(std::atan2(dy, dx)),
+          .length = round_length(std::hypot(dx, dy))};
+}
+
 /// The cubic from one pose to another that leaves and arrives along tangents of these lengths (a Bezier curve's).
 [[nodiscard]] inline Geometry make_cubic(geometry::Pose const& from, geometry::Pose const& to, double leaving,
                                          double arriving, std::string const& where) {
@@ -244,9 +260,11 @@ CAMBIUM_COLD std::vector<Geometry> curve_around(std::span<geometry::Point const>
     if (!(leaving.norm() > 1e-6 && arriving.norm() > 1e-6))
       throw MapError(where, "corner " + std::to_string(i) + " is no corner between its points",
                      "move it away from them");
-    geometries.push_back(detail::make_cubic(pose(points[i], leaving, i == 0 ? begin : std::nullopt),
-                                            pose(points[i + 1], arriving, i + 1 == corners.size() ? end : std::nullopt),
-                                            2.0 / 3.0 * leaving.norm(), 2.0 / 3.0 * arriving.norm(), where));
+    auto const from = pose(points[i], leaving, i == 0 ? begin : std::nullopt),
+               to = pose(points[i + 1], arriving, i + 1 == corners.size() ? end : std::nullopt);
+    geometries.push_back(detail::is_straight(from, to) ? detail::make_line(from, to)
+                                                       : detail::make_cubic(from, to, 2.0 / 3.0 * leaving.norm(),
+                                                                            2.0 / 3.0 * arriving.norm(), where));
   }
   detail::number_stations(geometries);
   return geometries;
