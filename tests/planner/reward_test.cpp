@@ -226,6 +226,32 @@ TEST_CASE_TEMPLATE("an event that ends the course counts as a term of its own, t
   CHECK(judged.cost == 1.0);
 }
 
+TEST_CASE("each term of the reward for driving is its weight times what its evaluator measures, per second") {
+  auto world = two_vehicles(70.0);
+  world.add({.position = {52, -5.0}, .speed = 12, .behavior = IdmClassic{}});  // brakes behind
+  world.set_state(AgentId{0}, {.x = 60, .y = -5.0, .speed = 12});
+  REQUIRE(world.step(0.2));
+  double const a = Acceleration{}(world, slot);
+  struct Term {
+    double TrafficReward::*weight;
+    double measured;
+  };
+  for (auto const& term :
+       {Term{&TrafficReward::progress, Progress{}(world, slot)},
+        Term{&TrafficReward::speed_deviation, SpeedDeviation{20.0}(world, slot)},
+        Term{&TrafficReward::acceleration, a * a}, Term{&TrafficReward::lateral_offset, LaneOffset{}(world, slot)},
+        Term{&TrafficReward::closeness, Closeness{}(world, slot)},
+        Term{&TrafficReward::others_braking, OthersBraking{}(world, slot)}}) {
+    auto reward = TrafficReward::events();
+    reward.desired_speed = 20.0;
+    reward.lookahead = 3.0;
+    reward.*term.weight = -2.0;
+    CHECK(std::abs(term.measured) > 0.01);
+    CHECK(reward.value(world, slot, 0.2) == doctest::Approx(-2.0 * 3.0 * term.measured));
+    CHECK(reward.judge(world, slot, 0.2).reward == doctest::Approx(-2.0 * 0.2 * term.measured));
+  }
+}
+
 TEST_CASE("a course that is cut off counts the terms per second for the lookahead, the user's too") {
   auto world = two_vehicles(300.0);
   Reward<SpeedDeviation> reward{.traffic = TrafficReward::events()};

@@ -1,6 +1,7 @@
 // Sampled situations: the same laws for merges, highways and junctions.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -150,6 +151,9 @@ TEST_CASE("vehicles on the ramp have the lane behind the merge as their goal, an
   auto const& ramp = site.entrances[site.ramp];
   CHECK(ramp.merges());
   CHECK(ramp.gives_up_lane);
+  CHECK(std::ranges::any_of(site.entrances, [](auto const& entrance) { return !entrance.merges(); }));
+  for (auto const& entrance : site.entrances)
+    if (!entrance.merges()) CHECK_FALSE(entrance.gives_up_lane);
   for (std::uint32_t number = 0; number < 20; ++number) {
     auto const scenario = site.sample(5, number);
     for (auto const& agent : scenario.agents) {

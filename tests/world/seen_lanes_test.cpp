@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "../world/fixtures.hpp"
+#include "fixtures.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/observer/delayed.hpp"
 #include "cambium/observer/parametric.hpp"
