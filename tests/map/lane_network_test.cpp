@@ -144,7 +144,28 @@ TEST_CASE("joined lanes that do not meet are reported with their distance, those
   CHECK(count(gap, Severity::warning, "continues 0.25 m away from where it ends") == 1);
   CHECK(leads(gap, {"1", 1, -1}, {"2", 1, -1}));
   auto const kink = load(two_roads(100, 0, 0.15, true));
-  CHECK(count(kink, Severity::info, "0.15 rad off its direction") == 1);
+  CHECK(kink.diagnostics.size() == 1);
+  CHECK(count(kink, Severity::warning, "m away from where it ends, 0.15 rad off its direction; the link was kept") ==
+        1);
+}
+
+TEST_CASE("lanes that meet at an angle are an info; nobody can follow a sharp one, which is a warning") {
+  for (std::string const angle : {"0.15", "0.8", "3.1"}) {
+    std::string const middle = "<laneOffset s=\"0\" a=\"1.75\" b=\"0\" c=\"0\" d=\"0\"/>";
+    Road a{.behind = to_start("2"), .sections = {{.lanes = {{.behind = {-1}}}}}, .lane_offset = middle};
+    Road b{.id = "2",
+           .x = 100,
+           .heading = std::stod(angle),
+           .before = to_end("1"),
+           .sections = {{.lanes = {{.before = {-1}}}}},
+           .lane_offset = middle};
+    auto const loaded = load(file({a, b}));
+    CHECK(leads(loaded, {"1", 1, -1}, {"2", 1, -1}));
+    REQUIRE(loaded.diagnostics.size() == 1);
+    CAPTURE(to_string(loaded.diagnostics[0]));
+    CHECK(count(loaded, std::stod(angle) < 0.5 ? Severity::info : Severity::warning,
+                "continues " + angle + " rad off its direction; the link was kept") == 1);
+  }
 }
 
 TEST_CASE("reference lines that do not meet are no fault where the lanes do") {
@@ -209,7 +230,8 @@ TEST_CASE("links lead through sections that have no length") {
   auto const loaded = load(file({road}));
   CHECK(loaded.map->lanes().size() == 3);
   CHECK(leads(loaded, {"1", 10, -1}, {"1", 90, -2}));
-  CHECK(count(loaded, Severity::warning, "link") == 0);
+  CHECK(loaded.diagnostics.size() == 2);
+  CHECK(count(loaded, Severity::warning, "away from where it ends") == 1);
   CHECK(count(loaded, Severity::info, "it has no length") == 1);
   // At the end of a road, to the next road.
   Road next{.id = "2", .x = 100, .before = to_end("1")};

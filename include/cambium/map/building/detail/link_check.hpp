@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
-#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
 #include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane_network.hpp"
@@ -32,27 +36,30 @@ class LinkCheck {
     check_connections();
   }
 
-  /// Gaps and kinks between lanes that were joined.
+  /// Gaps and kinks between lanes that were joined: one finding for each pair of roads, with the largest of each.
   void report_joints(std::span<Lane const> lanes) {
-    struct Worst {
-      NetworkFinding finding;
-      int count = 0;
-    };
-    std::map<std::tuple<NetworkFault, RoadId, RoadId>, Worst> worst;
+    std::map<std::pair<RoadId, RoadId>, Joint> joints;
     for (auto const& finding : check_lane_network(lanes)) {
-      if (finding.fault != NetworkFault::gap && finding.fault != NetworkFault::border_step &&
-          finding.fault != NetworkFault::kink)
-        continue;
+      auto const kind = std::find(std::begin(joint_faults), std::end(joint_faults), finding.fault);
+      if (kind == std::end(joint_faults)) continue;
       RoadId const a = lanes[index_of(finding.lane)].road, b = lanes[index_of(finding.other)].road;
-      auto& of_roads = worst[{finding.fault, std::min(a, b), std::max(a, b)}];
-      ++of_roads.count;
-      if (std::abs(finding.size) > std::abs(of_roads.finding.size)) of_roads.finding = finding;
+      auto& joint = joints[std::minmax(a, b)];
+      joint.lanes.emplace(finding.lane, finding.other);
+      auto& worst = joint.worst[kind - std::begin(joint_faults)];
+      if (!worst || std::abs(finding.size) > std::abs(worst->size)) worst = finding;
     }
-    for (auto const& [key, of_roads] : worst) report_joint(lanes, of_roads.finding, of_roads.count);
+    for (auto const& [roads, joint] : joints) report_joint(lanes, joint);
   }
 
  private:
   using ContactPoint = opendrive::ContactPoint;
+  static constexpr NetworkFault joint_faults[] = {NetworkFault::gap, NetworkFault::border_step, NetworkFault::kink};
+
+  /// What is wrong where lanes of two roads are joined.
+  struct Joint {
+    std::optional<NetworkFinding> worst[std::size(joint_faults)]{};
+    std::set<std::pair<LaneId, LaneId>> lanes{};
+  };
 
   /// A road's link must be known to the road that it leads to, or to the junction that lies there.
   void check_road_link(std::size_t r, ContactPoint end) {
@@ -139,22 +146,27 @@ class LinkCheck {
     return count > 1 ? " (and " + std::to_string(count - 1) + " more such)" : "";
   }
 
-  void report_joint(std::span<Lane const> lanes, NetworkFinding const& finding, int count) {
+  void report_joint(std::span<Lane const> lanes, Joint const& joint) {
+    constexpr double sharp = 0.5;  // [rad], own choice: no road that was surveyed turns so at a point
+    auto const& [gap, step, kink] = joint.worst;
+    auto const& finding = gap ? *gap : step ? *step : *kink;
     auto const &lane = lanes[index_of(finding.lane)], &next = lanes[index_of(finding.other)];
     auto const name = [&](Lane const& l) { return links_.roads()[index_of(l.road)].name; };
     auto const* written = links_.document().roads[index_of(lane.road)].lane_sections[lane.section].find(lane.number);
-    using cambium::detail::rounded_text;
-    std::string const size = rounded_text(std::abs(finding.size));
     std::string what;
-    if (finding.fault == NetworkFault::gap) what = size + " m away from where it ends";
-    if (finding.fault == NetworkFault::border_step) what = "with a border " + size + " m away from its own";
-    if (finding.fault == NetworkFault::kink) what = size + " rad off its direction";
+    auto const add = [&](std::optional<NetworkFinding> const& fault, std::string const& before, char const* behind) {
+      if (fault)
+        what += (what.empty() ? "" : ", ") + before + cambium::detail::rounded_text(std::abs(fault->size)) + behind;
+    };
+    add(gap, "", " m away from where it ends");
+    add(step, "with a border ", " m away from its own");
+    add(kink, "", " rad off its direction");
     findings_.add(
-        finding.fault == NetworkFault::gap ? Severity::warning : Severity::info,
+        gap || (kink && std::abs(kink->size) > sharp) ? Severity::warning : Severity::info,
         written != nullptr ? static_cast<int>(written->line) : 0, "link",
         "road " + name(lane) + ", section " + std::to_string(lane.section) + ", lane " + std::to_string(lane.number),
         "lane " + std::to_string(next.number) + " of road " + name(next) + ", section " + std::to_string(next.section) +
-            ", continues " + what + others_text(count));
+            ", continues " + what + others_text(static_cast<int>(joint.lanes.size())) + "; the link was kept");
   }
 
   RoadLinks const& links_;
