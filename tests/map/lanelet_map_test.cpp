@@ -177,6 +177,34 @@ TEST_CASE("lanelets that cross are a junction with conflicts, and so is what tur
   CHECK(lane_of(made, 4).signals[0].s == doctest::Approx(48.0));
 }
 
+TEST_CASE("a bridge neither crosses nor makes a junction of what lies under it") {
+  for (double const height : {0.0, 2.0, 6.0}) {
+    auto under = straight(1, {0, 0}, {100, 0}), over = straight(2, {50, -50}, {50, 50});
+    for (auto* lanelet : {&under, &over}) {
+      lanelet->left_heights.assign(3, 100.0);
+      lanelet->right_heights.assign(3, 100.0);
+    }
+    over.left_heights[1] = over.right_heights[1] = 100.0 + height;  // a ramp up and one down
+    auto const made = build_lanelet_map({under, over});
+    CHECK(made.diagnostics.empty());
+    auto const& road = made.map->road(lane_of(made, 2).road);
+    CHECK(road.elevation.value(0.0) == doctest::Approx(100.0));
+    CHECK(road.elevation.value(25.0) == doctest::Approx(100.0 + 0.5 * height).epsilon(1e-3));
+    bool const is_bridge = height > cambium::map::clear_height;
+    CHECK(made.map->junctions().size() == (is_bridge ? 0u : 1u));
+    CHECK(lane_of(made, 1).overlaps.size() == (is_bridge ? 0u : 1u));
+    auto const again = cambium::map::lanelets_of(*made.map);
+    REQUIRE(again.size() == 2);
+    CHECK(again[1].left_heights[again[1].left.size() / 2] == doctest::Approx(100.0 + height).epsilon(0.005));
+    under.left_heights.clear();
+    auto const flat = build_lanelet_map({under, over});
+    CHECK(text_of(flat.diagnostics)
+              .find("lanelet 1: it has no heights of all its points, and others have: the map is "
+                    "flat") != std::string::npos);
+    CHECK(lane_of(flat, 1).overlaps.size() == 1);
+  }
+}
+
 TEST_CASE("what is odd in lanelets is a finding, and the rest is a map") {
   auto good = straight(1, {0, 0}, {100, 0}), next = straight(2, {100, 0}, {200, 0}),
        far = straight(3, {0, 50}, {9, 50});
@@ -324,6 +352,14 @@ TEST_CASE("a Lanelet2 file says who follows whom, who lies beside whom, limits a
   CHECK(lane_of(made, 22).signals[0].s == doctest::Approx(40.0));
   REQUIRE(made.map->lights().size() == 1);
   CHECK(made.map->lights()[0].name == "31");
+  CHECK(made.map->roads()[0].elevation.value(10.0) == 0.0);
+  auto high = lanelet2_text();
+  std::size_t number = 0;
+  for (auto at = high.find("</node>"); at != std::string::npos; at = high.find("</node>", at + 40))
+    high.insert(at, "<tag k='ele' v='" + std::to_string(200 + number++ % 3) + "'/>");  // rises by 1 m in 50 m
+  auto const hill = lanelet2_map(high);
+  CHECK_MESSAGE(hill.diagnostics.empty(), text_of(hill.diagnostics));
+  CHECK(hill.map->road(lane_of(hill, 21).road).elevation.value(25.0) == doctest::Approx(200.5));
   auto const with_line = [](std::string const& subtype) {
     auto text = lanelet2_text();
     text.replace(text.find("v='dashed'"), 10, "v='" + subtype + "'");

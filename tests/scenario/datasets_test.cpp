@@ -370,7 +370,11 @@ TEST_CASE("a malformed CommonRoad file is an error with file, line and remedy") 
 }
 
 TEST_CASE("what is written as CommonRoad reads back the same, bit by bit") {
-  std::vector<std::string> texts{common_road()};
+  std::vector<std::string> texts{common_road(), common_road()};
+  for (auto at = texts[1].find("</point>"); at < texts[1].find("<trafficSign ");
+       at = texts[1].find("</point>", at + 20))
+    texts[1].insert(at, "<z>4.5</z>");
+  CHECK(parse_common_road(texts[1]).lanelets[1].right_heights == std::vector<double>(3, 4.5));
   for (char const* name : {"DEU_Test-1_1_T-1", "ZAM-Ramp-1_1-T-1", "ZAM_Over-1_1", "ZAM_Tjunction-1_42_T-1",
                            "ZAM_Tutorial-1_2_T-1", "test_reading_all", "test_reading_planning_problem"})
     if (auto const file = corpus::find("scenarios/commonroad/" + std::string(name) + ".xml"))

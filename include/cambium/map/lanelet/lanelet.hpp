@@ -26,7 +26,8 @@ struct LaneletSignal {
 /// A piece of a lane. `left` and `right` run in the direction of travel; what a neighbour is travels the same way.
 struct Lanelet {
   std::int64_t id = 0;
-  std::vector<geometry::Point> left{}, right{};  ///< at least two points each, map frame [m]
+  std::vector<geometry::Point> left{}, right{};         ///< at least two points each, map frame [m]
+  std::vector<double> left_heights{}, right_heights{};  ///< of these points [m]; empty: not known
   std::vector<std::int64_t> predecessors{}, successors{};
   std::optional<std::int64_t> left_neighbor{}, right_neighbor{};
   bool may_change_left = true, may_change_right = true;  ///< as the marks say

@@ -109,6 +109,7 @@ class Lanelet2Reader {
       if (!id) return;
       auto const x = parse_number<double>(tag(node, "local_x")), y = parse_number<double>(tag(node, "local_y"));
       if (x && y) local.emplace(*id, Point{*x, *y});
+      if (auto const height = parse_number<double>(tag(node, "ele"))) heights_.emplace(*id, *height);
       auto const latitude = parse_number<double>(node.attribute("lat").value()),
                  longitude = parse_number<double>(node.attribute("lon").value());
       bool const is_placed = latitude && longitude && std::abs(*latitude) <= 84.0 && std::abs(*longitude) <= 180.0;
@@ -178,6 +179,17 @@ class Lanelet2Reader {
     for (auto const node : ways_.at(bound.way).nodes) points.push_back(nodes_.at(node));
     if (bound.reversed) std::reverse(points.begin(), points.end());
     return points;
+  }
+  /// The heights of a bound's points; none where one has none.
+  [[nodiscard]] std::vector<double> heights_of(Bound const& bound) const {
+    std::vector<double> heights;
+    for (auto const node : ways_.at(bound.way).nodes) {
+      auto const height = heights_.find(node);
+      if (height == heights_.end()) return {};
+      heights.push_back(height->second);
+    }
+    if (bound.reversed) std::reverse(heights.begin(), heights.end());
+    return heights;
   }
   [[nodiscard]] Id end_node(Bound const& bound, bool at_end) const {
     auto const& nodes = ways_.at(bound.way).nodes;
@@ -323,6 +335,8 @@ class Lanelet2Reader {
     read.right = r;
     read.lanelet.left = points_of(l);
     read.lanelet.right = points_of(r);
+    read.lanelet.left_heights = heights_of(l);
+    read.lanelet.right_heights = heights_of(r);
     read.begin = {end_node(l, false), end_node(r, false)};
     read.end = {end_node(l, true), end_node(r, true)};
     read.lanelet.may_change_left = may_cross(l, false);
@@ -514,6 +528,7 @@ class Lanelet2Reader {
   std::map<std::vector<Id>, std::string> lights_;            ///< by their heads
   std::set<std::pair<std::size_t, std::size_t>> go_before_;  ///< pairs of lanelets, as the elements say
   std::map<Id, Point> nodes_;
+  std::map<Id, double> heights_;  ///< of nodes that have one
   std::map<Id, Way> ways_;
   std::vector<Read> lanelets_;
   std::map<Id, std::size_t> places_;

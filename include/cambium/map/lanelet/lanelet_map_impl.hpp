@@ -65,6 +65,15 @@ class LaneletMapMaker {
     return {};
   }
 
+  /// Straight from each height to the next; they are those of the ends of the geometries.
+  [[nodiscard]] static std::vector<CubicRecord> elevation_along(std::vector<Geometry> const& line,
+                                                                std::vector<double> const& heights) {
+    std::vector<CubicRecord> records;
+    for (std::size_t i = 0; i + 1 < heights.size(); ++i)
+      records.push_back({line[i].s, heights[i], (heights[i + 1] - heights[i]) / line[i].length, 0.0, 0.0});
+    return records;
+  }
+
   void add_road(std::size_t i) {
     auto const& lanelet = network_.lanelets[i];
     auto const& center = network_.centers[i];
@@ -81,7 +90,9 @@ class LaneletMapMaker {
         if (is_new) at->second = builder_.add_junction("junction " + plan.id);
         plan.junction = at->second;
       }
+      auto elevation = elevation_along(plan.line, center.heights);
       (void)builder_.add_road(std::move(plan));
+      if (!elevation.empty()) builder_.road(id).elevation = std::move(elevation);
       if (lanelet.both_directions)
         for (auto& written : builder_.road(id).lane_sections.front().lanes)
           if (written.id != 0) written.direction = opendrive::LaneDirection::both;
@@ -237,9 +248,20 @@ CAMBIUM_COLD std::vector<Lanelet> lanelets_of(Map const& map, std::int64_t first
   auto const is_kept = [&map](LaneId id) {
     return is_valid(id) && map.lane(id).drivable() && !map.lane(id).left.empty() && !map.lane(id).right.empty();
   };
+  bool const has_heights = std::any_of(map.roads().begin(), map.roads().end(), [](Road const& road) {
+    auto const is_level = [&](double u) { return road.elevation.value(u * road.length) == 0.0; };
+    return !is_level(0.0) || !is_level(0.5) || !is_level(1.0);
+  });
   for (auto const& lane : map.lanes()) {
     if (!is_kept(lane.id)) continue;
     Lanelet lanelet{.id = id_of(lane.id), .left = lane.left.points(), .right = lane.right.points()};
+    auto const height = [&](geometry::Point const& p) {
+      return map.road(lane.road).elevation.value(lane.station_at(lane.path.project(p).s));
+    };
+    if (has_heights) {
+      for (auto const& p : lanelet.left) lanelet.left_heights.push_back(height(p));
+      for (auto const& p : lanelet.right) lanelet.right_heights.push_back(height(p));
+    }
     for (auto const other : lane.successors)
       if (is_kept(other)) lanelet.successors.push_back(id_of(other));
     for (auto const other : lane.predecessors)

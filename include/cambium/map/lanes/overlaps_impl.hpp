@@ -217,7 +217,6 @@ class OverlapFinder {
   [[nodiscard]] bool pass_over(LaneChord const& a, PathStretch const& on_a, LaneChord const& b,
                                PathStretch const& on_b) const {
     if (!elevation_) return false;
-    constexpr double clear_height = 3.0;  // [m] enough for one to pass under the other
     bool const same_way = a.ux * b.ux + a.uy * b.uy > 0.0;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (double const u : {0.0, 0.5, 1.0}) {

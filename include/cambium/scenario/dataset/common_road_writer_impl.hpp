@@ -83,10 +83,11 @@ class CommonRoadWriter {
       leaf("intervalEnd", end);
     });
   }
-  void point(geometry::Point const& p) {
+  void point(geometry::Point const& p, std::optional<double> height = {}) {
     text_.element("point", [&] {
       leaf("x", decimal_text(p.x()));
       leaf("y", decimal_text(p.y()));
+      if (height) leaf("z", decimal_text(*height));
     });
   }
   void reference(char const* name, Id id) {
@@ -142,8 +143,8 @@ class CommonRoadWriter {
   void write_lanelet(map::Lanelet const& lanelet) {
     text_.element("lanelet", [&] {
       attribute("id", std::to_string(lanelet.id));
-      write_bound("leftBound", lanelet.left, lanelet.may_change_left);
-      write_bound("rightBound", lanelet.right, lanelet.may_change_right);
+      write_bound("leftBound", lanelet.left, lanelet.left_heights, lanelet.may_change_left);
+      write_bound("rightBound", lanelet.right, lanelet.right_heights, lanelet.may_change_right);
       for (auto const id : lanelet.predecessors) reference("predecessor", id);
       for (auto const id : lanelet.successors) reference("successor", id);
       if (lanelet.left_neighbor) write_neighbor("adjacentLeft", *lanelet.left_neighbor);
@@ -163,9 +164,11 @@ class CommonRoadWriter {
     });
   }
 
-  void write_bound(char const* name, std::vector<geometry::Point> const& points, bool may_change) {
+  void write_bound(char const* name, std::vector<geometry::Point> const& points, std::vector<double> const& heights,
+                   bool may_change) {
     text_.element(name, [&] {
-      for (auto const& p : points) point(p);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        point(points[i], heights.size() == points.size() ? std::optional(heights[i]) : std::nullopt);
       leaf("lineMarking", may_change ? "dashed" : "solid");
     });
   }

@@ -13,6 +13,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/lanes/overlaps.hpp"
 
 /// The geometry of lanelets: bounds that can be built from, the line between them, and where they cross.
 namespace cambium::map::detail {
@@ -84,7 +85,10 @@ struct Rail {
   double const twice_area = twice_area_between(lanelet.left, lanelet.right);
   if (!(std::abs(twice_area) > 0.02)) return "there is no room between its bounds";
   swapped = twice_area > 0.0;
-  if (swapped) std::swap(lanelet.left, lanelet.right);
+  if (swapped) {
+    std::swap(lanelet.left, lanelet.right);
+    std::swap(lanelet.left_heights, lanelet.right_heights);
+  }
   return nullptr;
 }
 
@@ -110,7 +114,19 @@ struct LaneletCenter {
   std::vector<double> headings;            ///< [rad]
   std::vector<Point> corners;              ///< between each two points, where the way turns
   std::vector<SideWidths> widths;
+  std::vector<double> heights;  ///< of `points` [m]; empty: not known
 };
+
+/// The height at share `u` of a bound's length; `heights` are those of its points.
+[[nodiscard]] inline double height_at(std::span<Point const> bound, std::span<double const> heights, double u) {
+  Rail const rail(bound);
+  double const place = u * rail.length();
+  auto const next = std::upper_bound(rail.s.begin() + 1, rail.s.end() - 1, place) - rail.s.begin();
+  auto const i = static_cast<std::size_t>(next);
+  double const length = rail.s[i] - rail.s[i - 1];
+  double const share = length > 0.0 ? std::clamp((place - rail.s[i - 1]) / length, 0.0, 1.0) : 1.0;
+  return heights[i - 1] + share * (heights[i] - heights[i - 1]);
+}
 
 /// The middle between facing points goes forwards wherever the directions of the bounds there are less than half a turn
 /// apart. Precondition: `fault_of_bounds` finds none.
@@ -134,6 +150,9 @@ struct LaneletCenter {
       Point const across = center.left.back() - center.right.back();
       double const half = 0.5 * std::max(0.0, across.y() * way.x() - across.x() * way.y());
       center.widths.push_back({half, half});
+      if (!lanelet.left_heights.empty())
+        center.heights.push_back(0.5 * (height_at(lanelet.left, lanelet.left_heights, u) +
+                                        height_at(lanelet.right, lanelet.right_heights, u)));
     };
     if (i == 0) add(0.0, begin);
     center.corners.push_back(i == 0 ? 0.75 * begin + 0.25 * end : begin);
@@ -193,7 +212,8 @@ struct LaneletCenter {
 }
 
 /// Whether two ways cross, away from their ends, at an angle of 20 degrees or more.
-[[nodiscard]] inline bool cross_each_other(std::vector<Point> const& a, std::vector<Point> const& b) {
+[[nodiscard]] inline bool cross_each_other(LaneletCenter const& one, LaneletCenter const& other) {
+  auto const &a = one.points, &b = other.points;
   constexpr double near_end = 0.5, sine = 0.34;  // [m], of 20 degrees
   auto const from_ends = [](std::vector<Point> const& line, Point const& p) {
     return std::min((p - line.front()).norm(), (p - line.back()).norm());
@@ -205,6 +225,11 @@ struct LaneletCenter {
       if (!(std::abs(turn) >= sine * u.norm() * v.norm()) || turn == 0.0) continue;
       double const along = (w.x() * v.y() - w.y() * v.x()) / turn, across = (w.x() * u.y() - w.y() * u.x()) / turn;
       if (along < 0.0 || along > 1.0 || across < 0.0 || across > 1.0) continue;
+      auto const height = [](LaneletCenter const& center, std::size_t at, double share) {
+        auto const& h = center.heights;
+        return h.empty() ? 0.0 : h[at] + share * (h[at + 1] - h[at]);
+      };
+      if (std::abs(height(one, i, along) - height(other, k, across)) > clear_height) continue;
       Point const p = a[i] + along * u;
       if (from_ends(a, p) > near_end && from_ends(b, p) > near_end) return true;
     }

@@ -88,7 +88,27 @@ class LaneletNetwork {
     return at == places_.end() ? nobody : at->second;
   }
 
+  /// Heights count where all lanelets have them: a bridge over what has none is no bridge.
+  void drop_some_heights(std::vector<Lanelet>& given) {
+    auto const has = [](Lanelet const& lanelet) {
+      auto const fit = [](auto const& heights, auto const& points) {
+        return heights.size() == points.size() &&
+               std::all_of(heights.begin(), heights.end(), [](double h) { return std::abs(h) < 1e5; });
+      };
+      return fit(lanelet.left_heights, lanelet.left) && fit(lanelet.right_heights, lanelet.right);
+    };
+    auto const without = std::find_if_not(given.begin(), given.end(), has);
+    if (without == given.end()) return;
+    if (std::any_of(given.begin(), given.end(), has))
+      report(Severity::warning, *without, "it has no heights of all its points, and others have: the map is flat");
+    for (auto& lanelet : given) {
+      lanelet.left_heights.clear();
+      lanelet.right_heights.clear();
+    }
+  }
+
   void take(std::vector<Lanelet> given) {
+    drop_some_heights(given);
     for (auto& lanelet : given) {
       bool swapped = false;
       if (auto const* const fault = fault_of_bounds(lanelet, swapped)) {
@@ -228,7 +248,7 @@ class LaneletNetwork {
       for (std::size_t k = i + 1; k < lanelets.size(); ++k) {
         if (!boxes[i].intersects(boxes[k]) || !is_drivable(lanelets[k].type) || roads.find(i) == roads.find(k))
           continue;
-        if (!cross_each_other(centers[i].points, centers[k].points)) continue;
+        if (!cross_each_other(centers[i], centers[k])) continue;
         inside[i] = inside[k] = true;
         junctions.unite(i, k);
       }

@@ -115,11 +115,15 @@ class CommonRoadLanes : protected CommonRoadValues {
     for (bool const is_left : {true, false}) {
       auto const bound = xml::find_child(node, is_left ? "leftBound" : "rightBound");
       auto& points = is_left ? lanelet.left : lanelet.right;
+      auto& heights = is_left ? lanelet.left_heights : lanelet.right_heights;
       xml::for_each_child(bound, "point", [&](Node child) {
         auto const p = point(child);
         good = good && p;
         if (p) points.push_back(*p);
+        if (auto const height = xml::parse_number<double>(text_of(xml::find_child(child, "z"))))
+          heights.push_back(*height);
       });
+      if (heights.size() != points.size()) heights.clear();
       auto const marking = text_of(xml::find_child(bound, "lineMarking"));
       (is_left ? lanelet.may_change_left : lanelet.may_change_right) =
           marking != "solid" && marking != "broad_solid" && marking != "curb";
