@@ -12,6 +12,7 @@ thread_local std::uint64_t count = 0, bytes = 0;
 std::uint64_t support::allocations() { return count; }
 std::uint64_t support::allocated_bytes() { return bytes; }
 
+#if CAMBIUM_COUNTS_ALLOCATIONS
 void* operator new(std::size_t size) {
   ++count;
   bytes += size;
@@ -20,3 +21,4 @@ void* operator new(std::size_t size) {
 }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
+#endif
