@@ -26,7 +26,7 @@ std::set<std::string> named_by(std::vector<Diagnostic> const& diagnostics) {
   std::set<std::string> ids;
   for (auto const& found : diagnostics) {
     std::string word;
-    for (char const c : to_string(found) + " ") {
+    for (char const c : found.ids + " " + found.sentence + " ") {
       if (c >= '0' && c <= '9') {
         word += c;
       } else if (!word.empty()) {
