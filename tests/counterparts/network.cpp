@@ -1,4 +1,5 @@
-// Prints who follows whom and lies beside whom on a map of lanelets, a row a lane: what counterparts are asked for, too.
+// Prints who follows whom and lies beside whom on a map of lanelets, a row a lane: what counterparts are asked for,
+// too.
 //   network FILE [WRITTEN.xml]     also writes a CommonRoad scenario again
 #include <cstdio>
 #include <fstream>
@@ -38,8 +39,8 @@ std::set<std::string> named_by(std::vector<Diagnostic> const& diagnostics) {
   return ids;
 }
 
-/// Rows "id successors left right may_change_left may_change_right limit", lists joined by commas, "-" for none; a minus
-/// before an id: that lanelet, driven backwards. Then "named" and what findings name.
+/// Rows "id successors left right may_change_left may_change_right limit", lists joined by commas, "-" for none; a
+/// minus before an id: that lanelet, driven backwards. Then "named" and what findings name.
 void print(Network const& network) {
   std::map<LaneId, std::string> names;
   for (auto const& [id, lane] : network.lanes) {

@@ -42,6 +42,28 @@ TEST_CASE("the map example says what a map contains and draws it") {
   }
 }
 
+TEST_CASE("the map example reads Lanelet2 and CommonRoad files, draws them, and is strict about what is odd in them") {
+  Program const map("map");
+  browser::TemporaryFolder const folder;
+  std::string const seeds = CAMBIUM_SOURCE_DIR "/tests/fuzz/lanelet_seeds/everything";
+  struct Row {
+    char const *kind, *words, *finding;
+    bool is_odd;
+  };
+  for (auto const& row : {Row{".osm", "Lanelet2, 6 lanelets", "no lanelet refers to the rule 404", true},
+                          Row{".xml", "CommonRoad \"ZAM_Everything-1_1_T-1\", 6 lanelets", "obstacle 84", false}}) {
+    auto const picture = folder.file("map.svg");
+    auto const said = map.output({seeds + row.kind, "--picture", picture});
+    CHECK(has(said, row.words));
+    CHECK(has(said, row.finding));
+    CHECK(has(content_of(picture), "</svg>"));
+    CHECK(map.run({seeds + row.kind, "--strict"}).code == (row.is_odd ? 1 : 0));
+  }
+  auto const nothing = map.run({folder.file("nothing.osm")});
+  CHECK(nothing.code != 0);
+  CHECK(has(nothing.err, "nothing.osm"));
+}
+
 TEST_CASE("poses, nearest lanes and links of real maps are those of the oracle") {
   Program const map("map");
   auto const folder = corpus::find("opendrive");
