@@ -13,11 +13,8 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/core/text.hpp"
-#include "cambium/geometry/angle.hpp"
-#include "cambium/geometry/box.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
-#include "cambium/map/lanelet/detail/utm.hpp"
+#include "cambium/map/lanelet/detail/osm_ways.hpp"
 #include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/map/lanes/signal_codes.hpp"
 #include "cambium/map/opendrive/xml.hpp"
@@ -30,16 +27,15 @@ namespace detail {
 class Lanelet2Reader {
  public:
   Lanelet2Reader(std::string_view text, std::string const& file, std::vector<Diagnostic>& diagnostics)
-      : context_(text, file, diagnostics) {}
+      : context_(text, file, diagnostics), ways_(context_) {}
 
   [[nodiscard]] std::vector<Lanelet> read(pugi::xml_node root, std::optional<Lanelet2Origin> const& origin) {
-    read_nodes(root, origin);
-    for_each_child(root, "way", [&](pugi::xml_node node) { read_way(node); });
+    ways_.read(root, origin);
     for_each_child(root, "relation", [&](pugi::xml_node node) {
-      if (tag(node, "type") == "lanelet") read_lanelet(node);
+      if (osm_tag(node, "type") == "lanelet") read_lanelet(node);
     });
     for_each_child(root, "relation", [&](pugi::xml_node node) {
-      if (tag(node, "type") == "regulatory_element") read_rule(node);
+      if (osm_tag(node, "type") == "regulatory_element") read_rule(node);
     });
     set_priorities();
     report_unread();
@@ -53,148 +49,18 @@ class Lanelet2Reader {
   }
 
  private:
-  using Id = std::int64_t;
+  using Id = OsmId;
 
-  struct Way {
-    std::vector<Id> nodes;
-    std::string type, subtype;
-    std::optional<bool> change{}, change_left{}, change_right{};  ///< tags lane_change, :left, :right, as the way runs
-  };
-  /// A bound: the way, and the way round in which the lanelet has it.
-  struct Bound {
-    Id way{};
-    bool reversed = false;
-    friend auto operator<=>(Bound const&, Bound const&) = default;
-  };
-  struct Read {
-    Lanelet lanelet;
-    Bound left, right;
-    std::pair<Id, Id> begin, end;  ///< its nodes there, left and right
-    std::vector<Id> rules;         ///< regulatory elements that it names
-  };
-
-  [[nodiscard]] static std::string_view tag(pugi::xml_node node, std::string_view key) {
-    for (auto child = node.first_child(); child; child = child.next_sibling())
-      if (local_name(child) == "tag" && child.attribute("k").value() == key) return child.attribute("v").value();
-    return {};
-  }
-
-  /// What a tag says, as Lanelet2 reads it; nothing where it is no truth value.
-  [[nodiscard]] static std::optional<bool> truth(std::string_view word) {
-    if (word == "yes" || word == "true" || word == "1") return true;
-    if (word == "no" || word == "false" || word == "0") return false;
-    return std::nullopt;
-  }
-
-  [[nodiscard]] std::string at(pugi::xml_node node) {
-    return context_.file() + ":" + std::to_string(context_.line(node));
-  }
   void warn(pugi::xml_node node, std::string sentence) {
     context_.report(Severity::warning, node, std::move(sentence));
   }
 
-  /// The element's id; nothing, with a finding, where it is no whole number, or the element is marked as deleted.
-  [[nodiscard]] std::optional<Id> id_of(pugi::xml_node node) {
-    if (std::string_view(node.attribute("action").value()) == "delete") return std::nullopt;
-    auto const id = context_.number<Id>(node, "id");
-    if (!id) warn(node, "it was left out");
-    return id;
-  }
-
-  void read_nodes(pugi::xml_node root, std::optional<Lanelet2Origin> const& given) {
-    std::map<Id, Point> local, degrees;  // of these x is the longitude
-    geometry::Box box;
-    for_each_child(root, "node", [&](pugi::xml_node node) {
-      auto const id = id_of(node);
-      if (!id) return;
-      auto const x = parse_number<double>(tag(node, "local_x")), y = parse_number<double>(tag(node, "local_y"));
-      if (x && y) local.emplace(*id, Point{*x, *y});
-      if (auto const height = parse_number<double>(tag(node, "ele"))) heights_.emplace(*id, *height);
-      auto const latitude = parse_number<double>(node.attribute("lat").value()),
-                 longitude = parse_number<double>(node.attribute("lon").value());
-      bool const is_placed = latitude && longitude && std::abs(*latitude) <= 84.0 && std::abs(*longitude) <= 180.0;
-      if (!is_placed && !(x && y))
-        throw MapError(at(node),
-                       "node " + std::to_string(*id) +
-                           " has no place: lat and lon are not both numbers of degrees within the UTM grid",
-                       "repair the node, or give it tags local_x and local_y in metres");
-      degrees.emplace(*id, is_placed ? Point{*longitude, *latitude} : Point{std::nan(""), std::nan("")});
-      if (is_placed) box.add(*longitude, *latitude);
-    });
-    if (!local.empty() && local.size() == degrees.size()) return static_cast<void>(nodes_ = std::move(local));
-    for (auto const& [id, place] : degrees)
-      if (!place.allFinite())
-        throw MapError(context_.file(),
-                       "node " + std::to_string(id) + " has only a local place, and other nodes have none",
-                       "give all nodes local_x and local_y, or all lat and lon");
-    if (degrees.empty()) return;
-    auto const origin = given.value_or(middle_of(box));
-    warn_if_far(box, origin);
-    UtmProjection const projection(origin.latitude, origin.longitude);
-    for (auto const& [id, place] : degrees) nodes_.emplace(id, projection(place.y(), place.x()));
-  }
-
-  /// The middle of a map [degrees]; (0, 0) for one near there.
-  [[nodiscard]] static Lanelet2Origin middle_of(geometry::Box const& degrees) {
-    constexpr double near = 0.9;  // [degrees], 100 km
-    if (geometry::Box{-near, -near, near, near}.contains(degrees)) return {};
-    return {.latitude = degrees.center().y(), .longitude = degrees.center().x()};
-  }
-
-  void warn_if_far(geometry::Box const& degrees, Lanelet2Origin const& origin) {
-    constexpr double far = 100.0, of_degree = 111.2;  // [km]
-    double const north = std::max(std::abs(degrees.max_y - origin.latitude), std::abs(degrees.min_y - origin.latitude)),
-                 east =
-                     std::max(std::abs(degrees.max_x - origin.longitude), std::abs(degrees.min_x - origin.longitude));
-    double const way = of_degree * std::hypot(north, east * std::cos(origin.latitude * geometry::pi / 180));
-    if (way > far)
-      context_.report(Severity::warning, 0, "node",
-                      "places lie up to " + cambium::detail::rounded_text(std::round(way)) +
-                          " km from the origin, where the projection distorts lengths; give one near the map");
-  }
-
-  void read_way(pugi::xml_node node) {
-    auto const id = id_of(node);
-    if (!id) return;
-    Way way{{}, std::string(tag(node, "type")), std::string(tag(node, "subtype"))};
-    way.change = truth(tag(node, "lane_change"));
-    way.change_left = truth(tag(node, "lane_change:left"));
-    way.change_right = truth(tag(node, "lane_change:right"));
-    if (!way.change && way.change_left.has_value() != way.change_right.has_value())
-      warn(node, "way " + std::to_string(*id) + " has lane_change:" + (way.change_left ? "left" : "right") +
-                     " without the other side; nobody changes lanes that way");
-    for_each_child(node, "nd", [&](pugi::xml_node child) {
-      auto const ref = context_.number<Id>(child, "ref");
-      if (ref && nodes_.contains(*ref))
-        way.nodes.push_back(*ref);
-      else if (ref)
-        warn(child, "way " + std::to_string(*id) + " names node " + std::to_string(*ref) +
-                        ", which is not there; it was left out");
-    });
-    ways_.emplace(*id, std::move(way));
-  }
-
-  [[nodiscard]] std::vector<Point> points_of(Bound const& bound) const {
-    std::vector<Point> points;
-    for (auto const node : ways_.at(bound.way).nodes) points.push_back(nodes_.at(node));
-    if (bound.reversed) std::reverse(points.begin(), points.end());
-    return points;
-  }
-  /// The heights of a bound's points; none where one has none.
-  [[nodiscard]] std::vector<double> heights_of(Bound const& bound) const {
-    std::vector<double> heights;
-    for (auto const node : ways_.at(bound.way).nodes) {
-      auto const height = heights_.find(node);
-      if (height == heights_.end()) return {};
-      heights.push_back(height->second);
-    }
-    if (bound.reversed) std::reverse(heights.begin(), heights.end());
-    return heights;
-  }
-  [[nodiscard]] Id end_node(Bound const& bound, bool at_end) const {
-    auto const& nodes = ways_.at(bound.way).nodes;
-    return at_end != bound.reversed ? nodes.back() : nodes.front();
-  }
+  struct Read {
+    Lanelet lanelet;
+    OsmBound left, right;
+    std::pair<Id, Id> begin, end;  ///< its nodes there, left and right
+    std::vector<Id> rules;         ///< regulatory elements that it names
+  };
 
   /// Calls `visit(member, ref)` for each member of a relation in `role`.
   template <class Visit>
@@ -210,8 +76,8 @@ class Lanelet2Reader {
     std::optional<Id> found;
     for_each_member(node, role, [&](pugi::xml_node member, Id ref) {
       if (found) return warn(member, "there is a second way in the role " + std::string(role) + "; it was left out");
-      auto const way = ways_.find(ref);
-      if (way == ways_.end() || way->second.nodes.size() < 2)
+      auto const* const way = ways_.find(ref);
+      if (way == nullptr || way->nodes.size() < 2)
         return warn(member, "way " + std::to_string(ref) + " is not there, or has fewer than two nodes");
       found = ref;
     });
@@ -254,7 +120,7 @@ class Lanelet2Reader {
       std::string_view const key = child.attribute("k").value();
       if (local_name(child) != "tag" || !key.starts_with(prefix)) continue;
       any = true;
-      if (truth(child.attribute("v").value()) != true) continue;
+      if (osm_truth(child.attribute("v").value()) != true) continue;
       auto const who = key.substr(prefix.size());
       cars = cars || who == "vehicle" || who == "vehicle:car";
       buses = buses || who == "vehicle:bus" || who == "vehicle:taxi";
@@ -285,9 +151,9 @@ class Lanelet2Reader {
   }
 
   void read_lanelet(pugi::xml_node node) {
-    auto const id = id_of(node);
+    auto const id = osm_id(context_, node);
     if (!id) return;
-    auto const word = tag(node, "subtype");
+    auto const word = osm_tag(node, "subtype");
     auto const* const subtype = find_subtype(word);
     auto const type = type_of(node, subtype);
     if (!type)
@@ -300,16 +166,17 @@ class Lanelet2Reader {
     read.lanelet.id = *id;
     read.lanelet.line = context_.line(node);
     read.lanelet.type = *type;
-    auto const one_way = truth(tag(node, "one_way:vehicle"));
-    read.lanelet.both_directions = is_drivable(*type) && !one_way.value_or(truth(tag(node, "one_way")).value_or(true));
-    read.lanelet.in_junction = !tag(node, "turn_direction").empty();
-    if (auto const limit = tag(node, "speed_limit"); !limit.empty()) {
+    auto const one_way = osm_truth(osm_tag(node, "one_way:vehicle"));
+    read.lanelet.both_directions =
+        is_drivable(*type) && !one_way.value_or(osm_truth(osm_tag(node, "one_way")).value_or(true));
+    read.lanelet.in_junction = !osm_tag(node, "turn_direction").empty();
+    if (auto const limit = osm_tag(node, "speed_limit"); !limit.empty()) {
       read.lanelet.speed_limit = speed_of(limit);
       if (!read.lanelet.speed_limit) warn(node, "speed_limit=" + std::string(limit) + " is no speed; it was left out");
     }
     auto const* const usual = subtype != nullptr && is_drivable(subtype->type) ? subtype : find_subtype("road");
     if (!read.lanelet.speed_limit && is_drivable(*type))
-      read.lanelet.speed_limit = (tag(node, "location") == "nonurban" ? usual->rural : usual->urban) / 3.6;
+      read.lanelet.speed_limit = (osm_tag(node, "location") == "nonurban" ? usual->rural : usual->urban) / 3.6;
     set_bounds(read, *left, *right);
     for_each_member(node, "regulatory_element", [&](pugi::xml_node, Id ref) { read.rules.push_back(ref); });
     if (!places_.emplace(*id, lanelets_.size()).second)
@@ -319,8 +186,8 @@ class Lanelet2Reader {
 
   /// Ways may be written either way round: the bounds are turned so that they run alike, left on the left.
   void set_bounds(Read& read, Id left, Id right) const {
-    Bound l{left}, r{right};
-    auto a = points_of(l), b = points_of(r);
+    OsmBound l{left}, r{right};
+    auto a = ways_.points_of(l), b = ways_.points_of(r);
     auto const apart = [](Point const& p, Point const& q) { return (p - q).norm(); };
     if (apart(a.front(), b.front()) + apart(a.back(), b.back()) >
         apart(a.front(), b.back()) + apart(a.back(), b.front())) {
@@ -333,25 +200,14 @@ class Lanelet2Reader {
     }
     read.left = l;
     read.right = r;
-    read.lanelet.left = points_of(l);
-    read.lanelet.right = points_of(r);
-    read.lanelet.left_heights = heights_of(l);
-    read.lanelet.right_heights = heights_of(r);
-    read.begin = {end_node(l, false), end_node(r, false)};
-    read.end = {end_node(l, true), end_node(r, true)};
-    read.lanelet.may_change_left = may_cross(l, false);
-    read.lanelet.may_change_right = may_cross(r, true);
-  }
-
-  /// Whether a vehicle may cross the line to its right side as `bound` runs, or to its left one: what its tags say,
-  /// else its look (Lanelet2's GenericTrafficRules). Virtual lines are for junctions: nobody changes lanes there.
-  [[nodiscard]] bool may_cross(Bound const& bound, bool to_right) const {
-    auto const& way = ways_.at(bound.way);
-    if (way.change) return *way.change;
-    bool const rightwards = to_right != bound.reversed;  // as the way runs
-    if (way.change_left || way.change_right) return (rightwards ? way.change_right : way.change_left).value_or(false);
-    if (way.type != "line_thin" && way.type != "line_thick") return false;
-    return way.subtype == "dashed" || way.subtype == (rightwards ? "dashed_solid" : "solid_dashed");
+    read.lanelet.left = ways_.points_of(l);
+    read.lanelet.right = ways_.points_of(r);
+    read.lanelet.left_heights = ways_.heights_of(l);
+    read.lanelet.right_heights = ways_.heights_of(r);
+    read.begin = {ways_.end_node(l, false), ways_.end_node(r, false)};
+    read.end = {ways_.end_node(l, true), ways_.end_node(r, true)};
+    read.lanelet.may_change_left = ways_.may_cross(l, false);
+    read.lanelet.may_change_right = ways_.may_cross(r, true);
   }
 
   /// The lanelets that a regulatory element names in `role`.
@@ -373,9 +229,9 @@ class Lanelet2Reader {
   }
 
   void read_rule(pugi::xml_node node) {
-    auto const id = id_of(node);
+    auto const id = osm_id(context_, node);
     if (!id) return;
-    auto const subtype = tag(node, "subtype");
+    auto const subtype = osm_tag(node, "subtype");
     std::vector<std::size_t> subject;
     for (std::size_t i = 0; i < lanelets_.size(); ++i)
       if (std::find(lanelets_[i].rules.begin(), lanelets_[i].rules.end(), *id) != lanelets_[i].rules.end())
@@ -456,9 +312,7 @@ class Lanelet2Reader {
   [[nodiscard]] std::vector<Point> stop_lines(pugi::xml_node node) {
     std::vector<Point> lines;
     for_each_member(node, "ref_line", [&](pugi::xml_node, Id ref) {
-      auto const way = ways_.find(ref);
-      if (way == ways_.end() || way->second.nodes.empty()) return;
-      lines.push_back(0.5 * (nodes_.at(way->second.nodes.front()) + nodes_.at(way->second.nodes.back())));
+      if (auto const middle = ways_.middle_of_ends(ref)) lines.push_back(*middle);
     });
     return lines;
   }
@@ -467,7 +321,7 @@ class Lanelet2Reader {
   template <class Visit>
   void for_each_sign(pugi::xml_node node, Visit const& visit) {
     for_each_member(node, "refers", [&](pugi::xml_node, Id ref) {
-      if (auto const way = ways_.find(ref); way != ways_.end()) visit(std::string_view(way->second.subtype));
+      if (auto const* const way = ways_.find(ref)) visit(std::string_view(way->subtype));
     });
   }
 
@@ -489,13 +343,13 @@ class Lanelet2Reader {
       if (code.starts_with("de274_1") || code.starts_with("de274.1")) limit = 30.0 / 3.6;  // a zone
       if (code == "de310") limit = 50.0 / 3.6;
     });
-    return limit ? limit : speed_of(tag(node, "sign_type"));
+    return limit ? limit : speed_of(osm_tag(node, "sign_type"));
   }
 
   /// Who follows whom, and who lies beside whom.
   void link() {
     std::multimap<std::pair<Id, Id>, std::size_t> begins;
-    std::map<Bound, std::size_t> by_left;
+    std::map<OsmBound, std::size_t> by_left;
     for (std::size_t i = 0; i < lanelets_.size(); ++i) {
       begins.emplace(lanelets_[i].begin, i);
       by_left.try_emplace(lanelets_[i].left, i);
@@ -524,12 +378,10 @@ class Lanelet2Reader {
   };
 
   XmlContext context_;
+  OsmWays ways_;
   std::map<std::string, Unread> unread_;
   std::map<std::vector<Id>, std::string> lights_;            ///< by their heads
   std::set<std::pair<std::size_t, std::size_t>> go_before_;  ///< pairs of lanelets, as the elements say
-  std::map<Id, Point> nodes_;
-  std::map<Id, double> heights_;  ///< of nodes that have one
-  std::map<Id, Way> ways_;
   std::vector<Read> lanelets_;
   std::map<Id, std::size_t> places_;
 };

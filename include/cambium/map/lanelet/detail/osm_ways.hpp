@@ -1,0 +1,211 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include "cambium/core/diagnostic.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/box.hpp"
+#include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
+#include "cambium/map/lanelet/detail/utm.hpp"
+#include "cambium/map/lanelet/lanelet2.hpp"
+#include "cambium/map/opendrive/xml.hpp"
+
+namespace cambium::map::detail {
+
+using OsmId = std::int64_t;
+
+/// The value of the element's tag `key`; empty where it has none.
+[[nodiscard]] inline std::string_view osm_tag(pugi::xml_node node, std::string_view key) {
+  for (auto child = node.first_child(); child; child = child.next_sibling())
+    if (local_name(child) == "tag" && child.attribute("k").value() == key) return child.attribute("v").value();
+  return {};
+}
+
+/// What a tag says, as Lanelet2 reads it; nothing where it is no truth value.
+[[nodiscard]] inline std::optional<bool> osm_truth(std::string_view word) {
+  if (word == "yes" || word == "true" || word == "1") return true;
+  if (word == "no" || word == "false" || word == "0") return false;
+  return std::nullopt;
+}
+
+/// The element's id; nothing, with a finding, where it is no whole number, or the element is marked as deleted.
+[[nodiscard]] inline std::optional<OsmId> osm_id(XmlContext& context, pugi::xml_node node) {
+  if (std::string_view(node.attribute("action").value()) == "delete") return std::nullopt;
+  auto const id = context.number<OsmId>(node, "id");
+  if (!id) context.report(Severity::warning, node, "it was left out");
+  return id;
+}
+
+/// A way: a line through nodes.
+struct OsmWay {
+  std::vector<OsmId> nodes;
+  std::string type, subtype;
+  std::optional<bool> change{}, change_left{}, change_right{};  ///< tags lane_change, :left, :right, as the way runs
+};
+
+/// A bound: the way, and the way round in which the lanelet has it.
+struct OsmBound {
+  OsmId way{};
+  bool reversed = false;
+  friend auto operator<=>(OsmBound const&, OsmBound const&) = default;
+};
+
+/// The nodes and ways of a Lanelet2 file, in metres.
+class OsmWays {
+  using Id = OsmId;
+
+ public:
+  explicit OsmWays(XmlContext& context) : context_(context) {}
+
+  /// Throws `MapError` where a node has no place.
+  void read(pugi::xml_node root, std::optional<Lanelet2Origin> const& origin) {
+    read_nodes(root, origin);
+    for_each_child(root, "way", [&](pugi::xml_node node) { read_way(node); });
+  }
+
+  /// The way of that id; null where there is none.
+  [[nodiscard]] OsmWay const* find(Id id) const {
+    auto const at = ways_.find(id);
+    return at == ways_.end() ? nullptr : &at->second;
+  }
+
+  /// The middle between the ends of a way; nothing where it is not there, or has no nodes.
+  [[nodiscard]] std::optional<Point> middle_of_ends(Id id) const {
+    auto const* const way = find(id);
+    if (way == nullptr || way->nodes.empty()) return std::nullopt;
+    return 0.5 * (nodes_.at(way->nodes.front()) + nodes_.at(way->nodes.back()));
+  }
+
+  [[nodiscard]] std::vector<Point> points_of(OsmBound const& bound) const {
+    std::vector<Point> points;
+    for (auto const node : ways_.at(bound.way).nodes) points.push_back(nodes_.at(node));
+    if (bound.reversed) std::reverse(points.begin(), points.end());
+    return points;
+  }
+  /// The heights of a bound's points; none where one has none.
+  [[nodiscard]] std::vector<double> heights_of(OsmBound const& bound) const {
+    std::vector<double> heights;
+    for (auto const node : ways_.at(bound.way).nodes) {
+      auto const height = heights_.find(node);
+      if (height == heights_.end()) return {};
+      heights.push_back(height->second);
+    }
+    if (bound.reversed) std::reverse(heights.begin(), heights.end());
+    return heights;
+  }
+  [[nodiscard]] Id end_node(OsmBound const& bound, bool at_end) const {
+    auto const& nodes = ways_.at(bound.way).nodes;
+    return at_end != bound.reversed ? nodes.back() : nodes.front();
+  }
+
+  /// Whether a vehicle may cross the line to its right side as `bound` runs, or to its left one: what its tags say,
+  /// else its look (Lanelet2's GenericTrafficRules). Virtual lines are for junctions: nobody changes lanes there.
+  [[nodiscard]] bool may_cross(OsmBound const& bound, bool to_right) const {
+    auto const& way = ways_.at(bound.way);
+    if (way.change) return *way.change;
+    bool const rightwards = to_right != bound.reversed;  // as the way runs
+    if (way.change_left || way.change_right) return (rightwards ? way.change_right : way.change_left).value_or(false);
+    if (way.type != "line_thin" && way.type != "line_thick") return false;
+    return way.subtype == "dashed" || way.subtype == (rightwards ? "dashed_solid" : "solid_dashed");
+  }
+
+ private:
+  [[nodiscard]] std::string at(pugi::xml_node node) {
+    return context_.file() + ":" + std::to_string(context_.line(node));
+  }
+  void warn(pugi::xml_node node, std::string sentence) {
+    context_.report(Severity::warning, node, std::move(sentence));
+  }
+
+  void read_nodes(pugi::xml_node root, std::optional<Lanelet2Origin> const& given) {
+    std::map<Id, Point> local, degrees;  // of these x is the longitude
+    geometry::Box box;
+    for_each_child(root, "node", [&](pugi::xml_node node) {
+      auto const id = osm_id(context_, node);
+      if (!id) return;
+      auto const x = parse_number<double>(osm_tag(node, "local_x")), y = parse_number<double>(osm_tag(node, "local_y"));
+      if (x && y) local.emplace(*id, Point{*x, *y});
+      if (auto const height = parse_number<double>(osm_tag(node, "ele"))) heights_.emplace(*id, *height);
+      auto const latitude = parse_number<double>(node.attribute("lat").value()),
+                 longitude = parse_number<double>(node.attribute("lon").value());
+      bool const is_placed = latitude && longitude && std::abs(*latitude) <= 84.0 && std::abs(*longitude) <= 180.0;
+      if (!is_placed && !(x && y))
+        throw MapError(at(node),
+                       "node " + std::to_string(*id) +
+                           " has no place: lat and lon are not both numbers of degrees within the UTM grid",
+                       "repair the node, or give it tags local_x and local_y in metres");
+      degrees.emplace(*id, is_placed ? Point{*longitude, *latitude} : Point{std::nan(""), std::nan("")});
+      if (is_placed) box.add(*longitude, *latitude);
+    });
+    if (!local.empty() && local.size() == degrees.size()) return static_cast<void>(nodes_ = std::move(local));
+    for (auto const& [id, place] : degrees)
+      if (!place.allFinite())
+        throw MapError(context_.file(),
+                       "node " + std::to_string(id) + " has only a local place, and other nodes have none",
+                       "give all nodes local_x and local_y, or all lat and lon");
+    if (degrees.empty()) return;
+    auto const origin = given.value_or(middle_of(box));
+    warn_if_far(box, origin);
+    UtmProjection const projection(origin.latitude, origin.longitude);
+    for (auto const& [id, place] : degrees) nodes_.emplace(id, projection(place.y(), place.x()));
+  }
+
+  /// The middle of a map [degrees]; (0, 0) for one near there.
+  [[nodiscard]] static Lanelet2Origin middle_of(geometry::Box const& degrees) {
+    constexpr double near = 0.9;  // [degrees], 100 km
+    if (geometry::Box{-near, -near, near, near}.contains(degrees)) return {};
+    return {.latitude = degrees.center().y(), .longitude = degrees.center().x()};
+  }
+
+  void warn_if_far(geometry::Box const& degrees, Lanelet2Origin const& origin) {
+    constexpr double far = 100.0, of_degree = 111.2;  // [km]
+    double const north = std::max(std::abs(degrees.max_y - origin.latitude), std::abs(degrees.min_y - origin.latitude)),
+                 east =
+                     std::max(std::abs(degrees.max_x - origin.longitude), std::abs(degrees.min_x - origin.longitude));
+    double const way = of_degree * std::hypot(north, east * std::cos(origin.latitude * geometry::pi / 180));
+    if (way > far)
+      context_.report(Severity::warning, 0, "node",
+                      "places lie up to " + cambium::detail::rounded_text(std::round(way)) +
+                          " km from the origin, where the projection distorts lengths; give one near the map");
+  }
+
+  void read_way(pugi::xml_node node) {
+    auto const id = osm_id(context_, node);
+    if (!id) return;
+    OsmWay way{{}, std::string(osm_tag(node, "type")), std::string(osm_tag(node, "subtype"))};
+    way.change = osm_truth(osm_tag(node, "lane_change"));
+    way.change_left = osm_truth(osm_tag(node, "lane_change:left"));
+    way.change_right = osm_truth(osm_tag(node, "lane_change:right"));
+    if (!way.change && way.change_left.has_value() != way.change_right.has_value())
+      warn(node, "way " + std::to_string(*id) + " has lane_change:" + (way.change_left ? "left" : "right") +
+                     " without the other side; nobody changes lanes that way");
+    for_each_child(node, "nd", [&](pugi::xml_node child) {
+      auto const ref = context_.number<Id>(child, "ref");
+      if (ref && nodes_.contains(*ref))
+        way.nodes.push_back(*ref);
+      else if (ref)
+        warn(child, "way " + std::to_string(*id) + " names node " + std::to_string(*ref) +
+                        ", which is not there; it was left out");
+    });
+    ways_.emplace(*id, std::move(way));
+  }
+
+  XmlContext& context_;
+  std::map<Id, Point> nodes_;
+  std::map<Id, double> heights_;  ///< of nodes that have one
+  std::map<Id, OsmWay> ways_;
+};
+
+}  // namespace cambium::map::detail
