@@ -113,9 +113,16 @@ TEST_CASE("a lane that ends beside another merges into it") {
        next = straight(3, {100, 0}, {200, 0});
   left.right_neighbor = 2;
   left.successors = {3};
+  right.signals = {{cambium::map::SignalKind::give_way, 60.0}, {cambium::map::SignalKind::stop, 10.0}};
   auto const made = build_lanelet_map({left, right, next});
   CHECK(lane_of(made, 1).successors == std::vector{made.lanes.at(3)});
-  CHECK(lane_of(made, 2).merges_into == made.lanes.at(1));
+  auto const& merging = lane_of(made, 2);
+  CHECK(merging.merges_into == made.lanes.at(1));
+  REQUIRE(merging.signals.size() == 2);  // beside the places where they were before the path swung over
+  CHECK(merging.path.pose(merging.signals[0].s).x == doctest::Approx(30.0).epsilon(1e-3));
+  CHECK(merging.path.pose(merging.signals[1].s).x == doctest::Approx(80.0).epsilon(1e-3));
+  REQUIRE(merging.left_changes.size() == 1);
+  CHECK(merging.left_changes[0].end <= merging.length());
   CHECK(map_faults::first_fault(*made.map) == "");
 }
 
