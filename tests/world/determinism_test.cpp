@@ -177,7 +177,7 @@ TEST_CASE("a warm world steps, copies and is judged without allocating") {
   auto const at_first = support::allocations();
   auto start = busy_world(map, 3);
   Mixed world = start;
-  CHECK(support::allocations() > at_first + start.size());  // they are counted
+  if (CAMBIUM_COUNTS_ALLOCATIONS) CHECK(support::allocations() > at_first + start.size());  // they are counted
   auto const run = [&] {
     world = start;
     for (int k = 0; k < 100; ++k) {
