@@ -140,7 +140,7 @@ TEST_CASE("a stop line lies before a lanelet's end by the way along it, and is d
     Point const place(20.0 * std::sin(angle), 20.0 - 20.0 * std::cos(angle));
     double const before = distance_before_end(bend, place);
     CHECK(before == doctest::Approx(share * length).epsilon(0.002));
-    auto const line = line_before_end(bend, before);
+    auto const line = line_before_end(bend, before).value();
     CHECK((line[0] - line[1]).norm() == doctest::Approx(4.0).epsilon(0.001));
     CHECK(distance_before_end(bend, 0.5 * (line[0] + line[1])) == before);
   }
@@ -148,6 +148,7 @@ TEST_CASE("a stop line lies before a lanelet's end by the way along it, and is d
   CHECK(distance_before_end(bend, {-40.0, 0.0}) == 0.0);  // of another lanelet
   bend.left.resize(1);
   CHECK(distance_before_end(bend, {0.0, 0.0}) == 0.0);
+  CHECK_FALSE(line_before_end(bend, 1.0));
 }
 
 TEST_CASE("lanelets that cross are a junction with conflicts, and so is what turns off beside them") {

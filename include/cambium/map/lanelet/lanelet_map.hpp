@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,9 +38,9 @@ struct LaneletMap {
 /// line. 0 for what lies behind its end or farther from its begin than it is long, or without usable bounds. O(points).
 [[nodiscard]] double distance_before_end(Lanelet const& lanelet, geometry::Point const& place);
 
-/// The ends, left and right, of a line across the lanelet that far before its end [m]. O(points). Precondition: each
-/// bound has two points that are a centimetre apart.
-[[nodiscard]] std::array<geometry::Point, 2> line_before_end(Lanelet const& lanelet, double distance);
+/// The ends, left and right, of a line across the lanelet that far before its end [m]; nothing without usable bounds.
+/// O(points).
+[[nodiscard]] std::optional<std::array<geometry::Point, 2>> line_before_end(Lanelet const& lanelet, double distance);
 
 /// The drivable lanes of a map as lanelets, whose ids are those of the lanes plus `first_id`: what a writer of lanelet
 /// formats needs. Linear in the map.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -236,10 +237,11 @@ CAMBIUM_COLD double distance_before_end(Lanelet const& lanelet, geometry::Point 
   return std::round((1.0 - share) * bounds.length() * 1e6) * 1e-6;
 }
 
-CAMBIUM_COLD std::array<geometry::Point, 2> line_before_end(Lanelet const& lanelet, double distance) {
+CAMBIUM_COLD std::optional<std::array<geometry::Point, 2>> line_before_end(Lanelet const& lanelet, double distance) {
+  if (detail::fault_of_bound(lanelet.left) != nullptr || detail::fault_of_bound(lanelet.right) != nullptr) return {};
   detail::FacingBounds const bounds(lanelet);
   double const share = std::clamp(1.0 - distance / bounds.length(), 0.0, 1.0);
-  return {bounds.left.at(share), bounds.right.at(share)};
+  return std::array{bounds.left.at(share), bounds.right.at(share)};
 }
 
 CAMBIUM_COLD std::vector<Lanelet> lanelets_of(Map const& map, std::int64_t first_id) {

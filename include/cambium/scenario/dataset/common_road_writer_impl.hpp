@@ -183,9 +183,10 @@ class CommonRoadWriter {
   void write_stop_line(map::Lanelet const& lanelet) {
     if (lanelet.signals.empty() || !(lanelet.signals.front().before_end > 0.0)) return;
     auto const line = map::line_before_end(lanelet, lanelet.signals.front().before_end);
+    if (!line) return;
     text_.element("stopLine", [&] {
-      point(line[0]);
-      point(line[1]);
+      point((*line)[0]);
+      point((*line)[1]);
       leaf("lineMarking", "solid");
     });
   }
