@@ -187,10 +187,10 @@ void replay(cb::RecordedTraffic const& traffic, Settings settings) {
   write_html_replay(page, film.recording());
   std::printf("  %s plays it in a browser\n", page.string().c_str());
   if (!solves) return;
-  if (!outcome.solved)
-    return static_cast<void>(
-        std::printf("  the goal was not reached in time and without a collision: there is no "
-                    "solution\n"));
+  if (!outcome.solved) {
+    std::printf("  no solution: the goal was not reached in time and without a collision\n");
+    return;
+  }
   auto const shape = cb::geometry::car();
   cb::CommonRoadSolution solution{.benchmark_id = traffic.name,
                                   .problem = traffic.problems.front().id,

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "cambium/map/lanelet/lanelet2.hpp"
@@ -22,19 +23,14 @@ struct Network {
   std::vector<Diagnostic> diagnostics;
 };
 
-/// The ids of lanelets that findings name.
+/// The ids of lanelets that findings name: the numbers behind "lanelet", "successor", "predecessor" and "neighbour".
 std::set<std::string> named_by(std::vector<Diagnostic> const& diagnostics) {
+  std::set<std::string> const kinds{"lanelet", "successor", "predecessor", "neighbour"};
   std::set<std::string> ids;
   for (auto const& found : diagnostics) {
-    std::string word;
-    for (char const c : found.ids + " " + found.sentence + " ") {
-      if (c >= '0' && c <= '9') {
-        word += c;
-      } else if (!word.empty()) {
-        ids.insert(word);
-        word.clear();
-      }
-    }
+    std::istringstream words(found.ids + " " + found.sentence);
+    for (std::string before, word; words >> word; before = word)
+      if (kinds.contains(before)) ids.insert(word.substr(0, word.find_first_not_of("0123456789")));
   }
   return ids;
 }

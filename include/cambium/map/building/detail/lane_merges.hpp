@@ -77,16 +77,18 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
     widths.push_back(widths.back());
     stations.push_back(stations.back());
   }
-  auto const was = lane;
+  auto const move_places = [&lane](auto moved) {  // of its signals and changes
+    for (auto& signal : lane.signals) signal.s = moved(signal.s);
+    for (auto* changes : {&lane.left_changes, &lane.right_changes})
+      for (auto& stretch : *changes) stretch = {moved(stretch.begin), moved(stretch.end)};
+  };
+  move_places([&](double s) { return lane.station_at(s); });
   lane.merges_into = onto.id;
   lane.merge_begin = from;
   lane.path = geometry::Line::from_samples(path);
   lane.widths = std::move(widths);
   lane.stations = std::move(stations);
-  auto const moved = [&](double s) { return lane.position_at(was.station_at(s)); };  // places on the path
-  for (auto& signal : lane.signals) signal.s = moved(signal.s);
-  for (auto* changes : {&lane.left_changes, &lane.right_changes})
-    for (auto& stretch : *changes) stretch = {moved(stretch.begin), moved(stretch.end)};
+  move_places([&](double station) { return lane.position_at(station); });
 }
 
 /// Lets lanes that end while their neighbour goes on merge into that one; from the lanes that go on outwards, for one
