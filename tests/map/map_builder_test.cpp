@@ -417,7 +417,7 @@ TEST_CASE("two thousand roads, joined and with turns, are made with about twice 
   };
   MapBuilder half, whole;
   auto const few = make(half, 1000), all = make(whole, 2000);
-  CHECK(all < 3 * few);
+  CHECK(all <= 3 * few);  // 0 where they are not counted
   CHECK(whole.road("1999").predecessor->id == "1998");
   CHECK(whole.road("tj500").predecessor->id == "500");
   CHECK(whole.document().roads.size() == 2199);

@@ -311,7 +311,7 @@ TEST_CASE("three thousand geometries, sections or widths are loaded, with about 
       return support::allocations() - before;
     };
     auto const few = allocated_by(half), all = allocated_by(whole);
-    CHECK(static_cast<double>(all) < 2.2 * static_cast<double>(few));
+    CHECK(static_cast<double>(all) <= 2.2 * static_cast<double>(few));  // 0 where they are not counted
     auto const loaded = load(whole, false);
     CHECK(loaded.map->lanes().size() == static_cast<std::size_t>(many.sections));
     double length = 0.0;
