@@ -22,7 +22,7 @@ class NetworkCheck {
       : lanes_(lanes), tolerances_(tolerances) {}
 
   [[nodiscard]] std::vector<NetworkFinding> run() {
-    find_possible_links([](Lane const&, Lane const&) { return true; });
+    find_possible_links([this](Lane const&, Lane const&) { return tolerances_.link_direction; });
     for (auto const& lane : lanes_) {
       check_links(lane, lane.successors, &Lane::predecessors);
       check_links(lane, lane.predecessors, &Lane::successors);
@@ -33,12 +33,12 @@ class NetworkCheck {
     return std::move(findings_);
   }
 
-  /// The possible links alone, by lane: of those that `permits(from, to)`.
-  template <class Permits>
-  std::vector<NetworkFinding> const& find_possible_links(Permits const& permits) {
+  /// The possible links alone, by lane; `turn(from, to)` is the largest turn of a link [rad], negative for none.
+  template <class Turn>
+  std::vector<NetworkFinding> const& find_possible_links(Turn const& turn) {
     collect_begins();
     for (auto const& lane : lanes_)
-      if (lane.drivable() && !lane.path.empty() && lane.successors.empty()) find_possible_link(lane, permits);
+      if (lane.drivable() && !lane.path.empty() && lane.successors.empty()) find_possible_link(lane, turn);
     for (auto const& finding : possible_) entered_.push_back(finding.other);
     std::sort(entered_.begin(), entered_.end());
     return possible_;
@@ -99,9 +99,10 @@ class NetworkCheck {
     begin_tree_ = geometry::BoxTree(places);
   }
 
-  /// The nearest begin within the tolerances; of equal ones the first lane's.
-  template <class Permits>
-  void find_possible_link(Lane const& lane, Permits const& permits) {
+  /// The nearest begin within `link_distance`, and whose direction differs by `turn(lane, other)` at most; of equal
+  /// ones the first lane's.
+  template <class Turn>
+  void find_possible_link(Lane const& lane, Turn const& turn) {
     auto const end = lane.path.end_pose();
     double const reach = tolerances_.link_distance;
     double best = reach;
@@ -112,8 +113,7 @@ class NetworkCheck {
       auto const begin = other.path.begin_pose();
       double const apart = (begin.position() - end.position()).norm();
       if (!(apart < best || (apart == best && !(with < other.id)))) return false;
-      if (std::abs(geometry::angle_difference(begin.heading, end.heading)) > tolerances_.link_direction) return false;
-      if (!permits(lane, other)) return false;
+      if (!(std::abs(geometry::angle_difference(begin.heading, end.heading)) <= turn(lane, other))) return false;
       best = apart;
       with = other.id;
       return false;

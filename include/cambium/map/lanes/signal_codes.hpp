@@ -57,7 +57,7 @@ enum class Arrow : std::uint8_t { none = 0, left = 1, straight = 2, right = 4 };
 struct SignalCode {
   std::string_view country, type, subtype;
   SignalMeaning meaning{};
-  Arrow arrow = Arrow::none;
+  bool has_arrow = false;  ///< the subtype says which, see `arrow_of`
 };
 
 /// The codes that are known, in lower case. Sources: the tables of signs and of bulbs of esmini (77028d8), CARLA's list
@@ -70,18 +70,11 @@ inline constexpr std::array signal_codes{
     SignalCode{"", "1000017", "", SignalMeaning::light},
     SignalCode{"", "1000018", "", SignalMeaning::light},
     SignalCode{"", "1000019", "", SignalMeaning::light},
-    SignalCode{"", "1000010", "10", SignalMeaning::light, Arrow::left},
-    SignalCode{"", "1000010", "20", SignalMeaning::light, Arrow::right},
-    SignalCode{"", "1000010", "", SignalMeaning::light},
-    SignalCode{"", "1000011", "10", SignalMeaning::light, Arrow::left},
-    SignalCode{"", "1000011", "20", SignalMeaning::light, Arrow::right},
-    SignalCode{"", "1000011", "30", SignalMeaning::light, Arrow::straight},
-    SignalCode{"", "1000011", "40", SignalMeaning::light, Arrow::straight | Arrow::left},
-    SignalCode{"", "1000011", "50", SignalMeaning::light, Arrow::straight | Arrow::right},
-    SignalCode{"", "1000011", "", SignalMeaning::light},
-    SignalCode{"", "1000008", "", SignalMeaning::bulb},
-    SignalCode{"", "1000012", "", SignalMeaning::bulb},
-    SignalCode{"", "1000020", "", SignalMeaning::bulb},
+    SignalCode{"", "1000010", "", SignalMeaning::light, true},
+    SignalCode{"", "1000011", "", SignalMeaning::light, true},
+    SignalCode{"", "1000008", "", SignalMeaning::bulb, true},
+    SignalCode{"", "1000012", "", SignalMeaning::bulb, true},
+    SignalCode{"", "1000020", "", SignalMeaning::bulb, true},
     SignalCode{"", "1000002", "", SignalMeaning::other},
     SignalCode{"", "1000003", "", SignalMeaning::other},
     SignalCode{"", "1000004", "", SignalMeaning::other},
@@ -143,19 +136,41 @@ namespace detail {
 
 }  // namespace detail
 
-/// The row of a code as a file has it, in any spelling: "DEU" or "Germany" for the country, "1.000.001" for a number; a
-/// subtype of "-1" or "none" is none. Null where it is not known.
+/// The row of a code as a file has it, in any spelling: "DEU" or "Germany" for the country, "1.000.001" for a number,
+/// "274-55" for a type with its subtype; a subtype of "-1" or "none" is none. Null where it is not known.
 [[nodiscard]] inline SignalCode const* find_signal_code(std::string_view country, std::string_view type,
                                                         std::string_view subtype) {
-  auto where = detail::lower_case(country);
-  if (where == "usa") where = "us";
-  if (where != "us" && where != "au" && where != "es" && where != "se" && where != "cn") where.clear();
+  // The words of ISO 3166 for the countries of the catalogue.
+  static constexpr std::array<std::array<std::string_view, 3>, 5> countries{{{"us", "usa", "united states"},
+                                                                             {"au", "aus", "australia"},
+                                                                             {"es", "esp", "spain"},
+                                                                             {"se", "swe", "sweden"},
+                                                                             {"cn", "chn", "china"}}};
+  auto const word = detail::lower_case(country);
+  std::string_view where;
+  for (auto const& words : countries)
+    if (std::find(words.begin(), words.end(), word) != words.end()) where = words.front();
   auto const what = detail::without_groups(detail::lower_case(type));
   auto const part = detail::lower_case(subtype);
-  for (auto const& of : {where, std::string()})
+  for (auto const of : {where, std::string_view()})
     for (auto const& code : signal_codes)
       if (code.country == of && code.type == what && (code.subtype.empty() || code.subtype == part)) return &code;
-  return nullptr;
+  auto const dash = what.find('-');
+  return dash == std::string::npos || dash == 0
+             ? nullptr
+             : find_signal_code(country, what.substr(0, dash), what.substr(dash + 1));
+}
+
+/// The ways that an arrow light is for, by OpenDRIVE's subtypes (as esmini's table of bulbs has them).
+[[nodiscard]] constexpr Arrow arrow_of(SignalCode const& code, std::string_view subtype) {
+  if (!code.has_arrow) return Arrow::none;
+  if (subtype == "10" || subtype == "60" || subtype == "80") return Arrow::left;  // half left, down left
+  if (subtype == "20" || subtype == "70" || subtype == "90") return Arrow::right;
+  if (subtype == "30") return Arrow::straight;
+  if (subtype == "40") return Arrow::straight | Arrow::left;
+  if (subtype == "50") return Arrow::straight | Arrow::right;
+  if (subtype == "100") return Arrow::left | Arrow::right;
+  return Arrow::none;
 }
 
 }  // namespace cambium::map

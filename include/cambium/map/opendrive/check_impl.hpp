@@ -52,7 +52,7 @@ class DocumentCheck {
     for (opendrive::JunctionElement const& junction : document_->junctions) {
       if (junction.connections.empty() && !walked.contains(junction.id))
         findings_.add(Severity::warning, junction.line, "junction", "junction " + junction.id,
-                      "it has no connection; no lane leads through it");
+                      "it has no connection; only the links of roads lead through it");
       for (opendrive::Connection const& connection : junction.connections) check(junction, connection);
     }
   }

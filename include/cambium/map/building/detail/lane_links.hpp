@@ -155,9 +155,8 @@ class LaneLinker {
       warn(connection.line, "connection", ids,
            "road " + connection.incoming_road +
                ((junction.type == opendrive::JunctionType::virtual_)
-                    ? " does not meet the connecting road: that gives no elementS"
-                    : " is not linked to this junction") +
-               "; the connection was left out");
+                    ? " does not meet the connecting road: that gives no elementS; the connection was left out"
+                    : " is not linked to this junction; lanes are joined by their own links, or where they meet"));
       return;
     }
     for (auto const& link : connection.lane_links) {

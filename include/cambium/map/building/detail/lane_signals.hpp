@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 #include <span>
 #include <string>
 #include <tuple>
@@ -12,6 +11,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/stable_sort.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane.hpp"
@@ -26,8 +26,6 @@ class LaneSignals {
  public:
   LaneSignals(OpenDriveDocument const& document, std::span<Lane> lanes, Findings& findings)
       : document_(document), lanes_(lanes), findings_(findings) {
-    for (auto const& controller : document.controllers)
-      for (auto const& control : controller.controls) controllers_.emplace(control.signal_id, controller.id);
     for (std::size_t r = 0; r < document.roads.size(); ++r)
       for (auto const& signal : document.roads[r].signals) {
         signals_.emplace(signal.id, &signal);
@@ -35,6 +33,8 @@ class LaneSignals {
       }
     of_road_.resize(document.roads.size());
     for (auto const& lane : lanes) of_road_[index_of(lane.road)].push_back(lane.id);
+    for (auto const& controller : document.controllers)
+      for (auto const& control : controller.controls) add_control(controller, control.signal_id);
   }
 
   [[nodiscard]] std::vector<TrafficLight> set() {
@@ -61,6 +61,15 @@ class LaneSignals {
   [[nodiscard]] static std::string_view attribute(Signal const& signal, std::string_view name) {
     auto const* const found = signal.rest.find_attribute(name);
     return found == nullptr ? std::string_view() : std::string_view(found->value);
+  }
+
+  void add_control(opendrive::Controller const& controller, std::string const& signal) {
+    auto const [known, is_new] = controllers_.emplace(signal, controller.id);
+    if (signals_.contains(signal) && (is_new || known->second == controller.id)) return;
+    findings_.add(Severity::warning, 0, "controller", "controller " + controller.id,
+                  signals_.contains(signal)
+                      ? "controller " + known->second + " controls signal " + signal + ", too; that one counts"
+                      : "signal " + signal + " is not there; it was left out");
   }
 
   /// `place` says where it counts: the signal itself, or a reference to it.
@@ -93,7 +102,9 @@ class LaneSignals {
         continue;
       found = true;
       against_way = against_way && !fits;
-      give(lane, lane.position_at(place.s), *kind, *code, signal);
+      if (!give(lane, lane.position_at(place.s), *kind, *code, signal))
+        report(signal, road,
+               "no way behind lane " + std::to_string(lane.number) + " turns as its arrow says; it is left out there");
     }
     is_given = is_given || found;
     if (found && against_way)
@@ -111,33 +122,67 @@ class LaneSignals {
     });
   }
 
-  /// An arrow light before a junction is for the ways behind the lane that turn so.
-  void give(Lane& lane, double s, SignalKind kind, SignalCode const& code, Signal const& signal) {
+  /// An arrow light is for the ways that turn so where the lane forks; where it does not, for the lane. Whether there
+  /// is such a way.
+  bool give(Lane& lane, double s, SignalKind kind, SignalCode const& code, Signal const& signal) {
+    Arrow const arrow = arrow_of(code, attribute(signal, "subtype"));
+    auto const& ways = ways_behind(lane);
+    auto const is_meant = [&](LaneId way) { return has(arrow, turn_of(way)); };
+    auto const meant = std::count_if(ways.begin(), ways.end(), is_meant);
+    if (arrow != Arrow::none && ways.size() > 1 && meant == 0) return false;
     LightId const light = kind == SignalKind::light ? light_of(signal, code) : none<LightId>;
-    std::vector<Lane*> ways;
-    if (code.arrow != Arrow::none)
-      for (auto const next : lane.successors)
-        if (has(code.arrow, turn_of(lanes_[index_of(next)]))) ways.push_back(&lanes_[index_of(next)]);
-    if (ways.empty() || ways.size() == lane.successors.size()) return lane.signals.push_back({s, kind, light});
-    for (auto* const way : ways) way->signals.push_back({0.0, kind, light});
+    if (arrow == Arrow::none || ways.size() < 2 || meant == std::ssize(ways)) {
+      lane.signals.push_back({s, kind, light});
+      return true;
+    }
+    for (auto const way : ways)
+      if (is_meant(way)) lanes_[index_of(way)].signals.push_back({0.0, kind, light});
+    return true;
   }
 
-  [[nodiscard]] static Arrow turn_of(Lane const& lane) {
-    double const turn = geometry::angle_difference(lane.path.end_pose().heading, lane.path.begin_pose().heading);
+  /// The lanes that one can choose between, driving on along a lane.
+  [[nodiscard]] std::vector<LaneId> const& ways_behind(Lane const& lane) const {
+    Lane const* at = &lane;
+    for (std::size_t n = 0; at->successors.size() == 1 && n < lanes_.size() && !is_inside(*at); ++n)
+      at = &lanes_[index_of(at->successors.front())];
+    return is_inside(*at) ? lane.successors : at->successors;
+  }
+  [[nodiscard]] bool is_inside(Lane const& lane) const {
+    return !document_.roads[index_of(lane.road)].junction.empty();
+  }
+
+  /// How a way turns until it leaves its road.
+  [[nodiscard]] Arrow turn_of(LaneId way) const {
+    Lane const *const begin = &lanes_[index_of(way)], *end = begin;
+    while (end->successors.size() == 1 && lanes_[index_of(end->successors.front())].road == begin->road &&
+           end->successors.front() != way)
+      end = &lanes_[index_of(end->successors.front())];
+    double const turn = geometry::angle_difference(end->path.end_pose().heading, begin->path.begin_pose().heading);
     return turn > 0.5 ? Arrow::left : turn < -0.5 ? Arrow::right : Arrow::straight;
   }
 
-  /// The light that a signal belongs to: its controller's; bulbs without one are a light with those at their place.
+  /// The light that a signal belongs to: its controller's; bulbs without one are a light with those of the same arrow
+  /// at their place.
   [[nodiscard]] LightId light_of(Signal const& signal, SignalCode const& code) {
     auto const controller = controllers_.find(signal.id);
     auto name = controller == controllers_.end() ? "signal " + signal.id : controller->second;
-    if (controller == controllers_.end() && code.meaning == SignalMeaning::bulb) {
-      auto const t = std::string(attribute(signal, "t"));
-      name = bulbs_.try_emplace(std::tuple(roads_.at(&signal), std::lround(signal.s), t), name).first->second;
-    }
+    if (controller == controllers_.end() && code.meaning == SignalMeaning::bulb)
+      name = name_of_bulb(signal, code, name);
     auto const [known, is_new] = ids_.emplace(name, static_cast<LightId>(lights_.size()));
     if (is_new) lights_.push_back({known->second, name});
     return known->second;
+  }
+
+  [[nodiscard]] std::string name_of_bulb(Signal const& signal, SignalCode const& code, std::string const& name) {
+    constexpr double reach = 0.5;  // [m] between the bulbs of a head, own choice
+    double const t = cambium::detail::parse_number<double>(attribute(signal, "t")).value_or(0.0);
+    Bulb const bulb{signal.s, t, arrow_of(code, attribute(signal, "subtype")), name};
+    auto& others = bulbs_[roads_.at(&signal)];
+    for (auto const& other : others)
+      if (std::abs(other.s - bulb.s) <= reach && std::abs(other.t - t) <= reach && other.arrow == bulb.arrow)
+        return other.name;
+    others.push_back(bulb);
+    return name;
   }
 
   void report(Signal const& signal, std::size_t road, std::string sentence) {
@@ -167,6 +212,12 @@ class LaneSignals {
     int count;
   };
 
+  struct Bulb {
+    double s, t;  ///< its place on its road [m]
+    Arrow arrow;
+    std::string name;  ///< of its light
+  };
+
   OpenDriveDocument const& document_;
   std::span<Lane> lanes_;
   Findings& findings_;
@@ -176,7 +227,7 @@ class LaneSignals {
   std::map<Signal const*, std::size_t> roads_;  ///< of each signal
   std::map<Signal const*, bool> given_;         ///< whether a lane has it, of signs and lights that count
   std::map<std::string, Count> counts_;
-  std::map<std::tuple<std::size_t, long, std::string>, std::string> bulbs_;  ///< the name of the light at a place
+  std::map<std::size_t, std::vector<Bulb>> bulbs_;  ///< the first of each head, by road
   std::map<std::string, LightId> ids_;
   std::vector<TrafficLight> lights_;
 };

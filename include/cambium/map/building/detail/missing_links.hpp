@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 #include <string>
 #include <utility>
@@ -29,14 +30,15 @@ class MissingLinks {
     std::set<LaneId> dead_ends;
     NetworkTolerances const tolerances;
     NetworkCheck check(lanes_, tolerances);
-    auto const can_follow = [this](Lane const& from, Lane const& to) {
-      return permits(exit_of(from), entry_of(to)) && permits(entry_of(to), exit_of(from));
+    auto const turn = [&](Lane const& from, Lane const& to) {
+      if (is_linked(from, to)) return std::numbers::pi;
+      return permits(exit_of(from), entry_of(to)) && permits(entry_of(to), exit_of(from)) ? tolerances.link_direction
+                                                                                          : -1.0;
     };
-    for (auto const& finding : check.find_possible_links(can_follow)) {
+    for (auto const& finding : check.find_possible_links(turn)) {
       auto& from = lanes_[index_of(finding.lane)];
       auto& to = lanes_[index_of(finding.other)];
-      bool const joins = infer || leads(exit_of(from), entry_of(to)) || leads(entry_of(to), exit_of(from)) ||
-                         is_connected(exit_of(from), entry_of(to)) || is_connected(entry_of(to), exit_of(from));
+      bool const joins = infer || is_linked(from, to);
       report(joins ? Severity::info : Severity::warning, from,
              "it has no successor, but " + describe(to) + " begins where it ends; " +
                  (joins ? "the two were joined" : "is the link missing? It was left as a dead end"));
@@ -75,16 +77,27 @@ class MissingLinks {
     return std::find(beyond.begin(), beyond.end(), other) != beyond.end();
   }
 
-  /// Whether a junction connects the incoming road of `at` with the road of `other`, of which it names no lanes.
+  /// Whether the file links the sections of two lanes, or connects their roads without naming lanes.
+  [[nodiscard]] bool is_linked(Lane const& from, Lane const& to) const {
+    auto const exit = exit_of(from), entry = entry_of(to);
+    return leads(exit, entry) || leads(entry, exit) || is_connected(exit, entry) || is_connected(entry, exit);
+  }
+
+  /// Whether a junction connects the incoming road of `at` with the road of `other` and names no lanes; or has the road
+  /// of `other` as a connecting road that nothing is linked to there, and lies at `at`.
   [[nodiscard]] bool is_connected(SectionEnd const& at, SectionEnd const& other) const {
     auto const& roads = links_.document().roads;
+    if (!links_.is_road_end(at) || !links_.is_road_end(other)) return false;
     auto const& link = links_.link_at(at.road, at.end);
-    if (!links_.is_road_end(at) || !link || link->element_type != opendrive::ElementType::junction) return false;
+    auto const& back = links_.link_at(other.road, other.end);
+    if (link && link->element_type != opendrive::ElementType::junction) return false;
     for (auto const& junction : links_.document().junctions)
-      for (auto const& connection : junction.connections)
-        if (junction.id == link->id && connection.lane_links.empty() && connection.incoming_road == roads[at.road].id &&
-            connection.entered_road() == roads[other.road].id)
+      for (auto const& connection : junction.connections) {
+        if ((link && junction.id != link->id) || connection.entered_road() != roads[other.road].id) continue;
+        if (connection.incoming_road == roads[at.road].id && (connection.lane_links.empty() || (!link && !back)))
           return true;
+        if (link && !back && roads[other.road].junction == junction.id) return true;
+      }
     return false;
   }
 
