@@ -42,9 +42,7 @@ struct PastJunctions {
     auto const& agent = world.roster().agents[slot];
     auto const& corridor = agent.road->corridors[record.lane.corridor];
     double const rear = record.lane.s - agent.shape.rear;
-    auto const is_in_junction = [&](LaneId id) {
-      return is_valid(id) && is_valid(world.map().road(world.map().lane(id).road).junction);
-    };
+    auto const is_in_junction = [&](LaneId id) { return is_valid(id) && world.map().in_junction(id); };
     for (auto const& piece : corridor.pieces)
       if (piece.end > rear && is_in_junction(piece.lane)) return false;
     for (auto const& conflict : corridor.conflicts)

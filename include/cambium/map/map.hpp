@@ -120,6 +120,9 @@ class Map {
     return parts_.lanes[index_of(id)];
   }
 
+  /// Whether the lane's road leads through a junction. Precondition: the map has the lane. O(1).
+  [[nodiscard]] bool in_junction(LaneId id) const { return is_valid(road(lane(id).road).junction); }
+
   /// As `road`.
   [[nodiscard]] Junction const& junction(JunctionId id) const {
     CAMBIUM_ASSERT(index_of(id) < parts_.junctions.size(), "Map::junction: the map has no junction of that id");

@@ -54,7 +54,7 @@ CAMBIUM_COLD void try_to_add(JunctionSite const& site, JunctionTraffic const& tr
   auto const route = site.random_route(from, random);
   double junction = 0.0;
   std::size_t lanes = 0;
-  while (lanes < route.lanes.size() && !in_junction(map, route.lanes[lanes]))
+  while (lanes < route.lanes.size() && !map.in_junction(route.lanes[lanes]))
     junction += map.lane(route.lanes[lanes++]).length();
   double const last = std::min(map.lane(from).length(), junction - 6.0);
   if (lanes == route.lanes.size() || last < 5.0) return;
@@ -131,10 +131,10 @@ CAMBIUM_COLD JunctionSite find_junction_site(std::shared_ptr<Map const> map, std
   bool crosses = false;
   for (auto const& lane : site.map->lanes()) {
     if (!lane.drivable()) continue;
-    if (detail::in_junction(*site.map, lane.id)) {
+    if (site.map->in_junction(lane.id)) {
       for (auto const& overlap : lane.overlaps)
         crosses = crosses || overlap.kind == map::OverlapKind::crossing ||
-                  (overlap.kind == map::OverlapKind::merge && detail::in_junction(*site.map, overlap.other));
+                  (overlap.kind == map::OverlapKind::merge && site.map->in_junction(overlap.other));
     } else if (lane.length() >= 15.0) {
       all.push_back(lane.id);
       if (lane.predecessors.empty()) site.entrances.push_back(lane.id);

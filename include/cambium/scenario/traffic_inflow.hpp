@@ -80,10 +80,6 @@ struct InflowRules {
 
 namespace detail {
 
-[[nodiscard]] inline bool in_junction(Map const& map, LaneId lane) {
-  return is_valid(map.road(map.lane(lane).road).junction);
-}
-
 /// Highest speed [m/s] at place `s` [m] of a corridor from which a vehicle can obey the speed limit and take the bends
 /// ahead, and stop before signals and zones of conflict; negative where it is in one already.
 [[nodiscard]] double entering_speed(Map const& map, map::LaneCorridor const& corridor, double s,

@@ -51,7 +51,7 @@ CAMBIUM_COLD std::vector<TrafficSource> find_sources(Map const& map) {
   for (auto const& lane : map.lanes()) {
     auto const& width = lane.widths.front();
     if (!lane.drivable() || !lane.predecessors.empty() || is_valid(lane.opposite)) continue;
-    if (detail::in_junction(map, lane.id) || width.left + width.right < 2.5) continue;
+    if (map.in_junction(lane.id) || width.left + width.right < 2.5) continue;
     if (map::straight_route(map, lane.id, 100.0).length >= 30.0) sources.push_back({.lane = lane.id});
   }
   return sources;
@@ -61,7 +61,7 @@ CAMBIUM_COLD bool fits_route(Map const& map, map::Route const& route, geometry::
   double const sharpest = 0.9 / (0.5 * shape.front * shape.front);  // [1/m]: it swings out by 0.9 m
   return std::all_of(route.lanes.begin(), route.lanes.end(), [&](LaneId id) {
     auto const segments = map.lane(id).path.segments();
-    return detail::in_junction(map, id) || std::all_of(segments.begin(), segments.end(), [&](auto const& segment) {
+    return map.in_junction(id) || std::all_of(segments.begin(), segments.end(), [&](auto const& segment) {
              return std::abs(segment.curvature) < sharpest;
            });
   });
@@ -71,7 +71,7 @@ CAMBIUM_COLD map::Route random_route(Map const& map, LaneId from, RandomStream& 
   if (index_of(from) >= map.lanes().size())
     throw WorldError("random_route", "the map has no such lane", "take one of find_sources, or of Map::lanes");
   cambium::map::Route route{{from}, map.lane(from).length()};
-  while (route.length < longest || detail::in_junction(map, route.lanes.back())) {
+  while (route.length < longest || map.in_junction(route.lanes.back())) {
     std::vector<LaneId> next;
     for (auto const lane : map.lane(route.lanes.back()).successors)
       if (map.lane(lane).drivable() && std::find(route.lanes.begin(), route.lanes.end(), lane) == route.lanes.end())

@@ -145,7 +145,7 @@ struct Mcts {
         parameter("actions", &P::actions, "what ego and the agents that choose with it may do"),
         parameter("others", &P::others, "how the others are expected to behave"),
         parameter(
-            "others_keep_speed", &P::others_keep_speed, "-", Range{0, 1},
+            "others_keep_speed", &P::others_keep_speed,
             "those who drive faster than the others like, or steadily (if it learns about them: with nobody close "
             "ahead), or are on foot, are expected to like the speed they have"),
         parameter("reward", &P::reward, "what ego and each agent that chooses with it wants"),

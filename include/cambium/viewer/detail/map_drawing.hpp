@@ -150,7 +150,7 @@ class MapDrawing {
   }
 
   [[nodiscard]] bool is_in_junction(map::Lane const& lane) const {
-    return lane.drivable() && is_valid(map_.road(lane.road).junction);
+    return lane.drivable() && map_.in_junction(lane.id);
   }
 
   [[nodiscard]] std::string label_of(map::Lane const& lane) const {
@@ -272,7 +272,7 @@ class MapDrawing {
       if (widths.left + widths.right < 0.8) continue;
       auto pose = lane.path.pose(s);
       if (std::cos(pose.heading) < 0.0) pose.heading += std::numbers::pi;
-      double const size = is_valid(map_.road(lane.road).junction) ? 0.7 : 1.1;
+      double const size = map_.in_junction(lane.id) ? 0.7 : 1.1;
       out_ += "<text transform=\"" + turned(pose) + "\" font-size=\"" +
               svg_number(std::min(size, 0.5 * (widths.left + widths.right)), 2) + "\" dy=\".35em\">" + label_of(lane) +
               "</text>\n";
