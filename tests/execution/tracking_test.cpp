@@ -140,6 +140,16 @@ TEST_CASE_TEMPLATE("every vehicle model is tracked with", Model, cb::SingleTrack
   }
 }
 
+TEST_CASE("the reference moves between states of a plan that are half a millisecond apart") {
+  cb::State const start{.time = 1.0, .speed = 10.0};
+  cb::BasicPlan<cb::State> plan;
+  for (int i = 1; i <= 4; ++i) plan.trajectory.push_back({.time = 1.0 + 5e-4 * i, .x = 5e-3 * i, .speed = 10.0 + i});
+  auto const at = cb::detail::reference_at(plan, start, 1.00125);
+  CHECK(at.x == doctest::Approx(0.0125));
+  CHECK(at.speed == doctest::Approx(12.5));
+  CHECK(at.acceleration == doctest::Approx(2000.0));
+}
+
 TEST_CASE("nothing is tracked beyond the plan's end, and nothing without a plan") {
   cb::TrackingMemory<cb::State> memory;
   cb::RandomStream random(1, 1, 1);
