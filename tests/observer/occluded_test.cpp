@@ -248,6 +248,18 @@ TEST_CASE("intervals and rays hide the same static objects") {
   CHECK(knows.sees_object(sample(0), cb::Slot{0}, cb::Slot{1}));
 }
 
+TEST_CASE("an outline of many short edges is seen as one") {
+  Plane plane;
+  plane.states.push_back({});
+  plane.shapes = {cb::geometry::car()};
+  std::vector<Point> round;  // a bollard 3 m wide, whose edges are seen at 0.6 mrad or less
+  for (int i = 0; i < 500; ++i)
+    round.push_back({30.0 + 1.5 * std::cos(i * cb::geometry::pi / 250), 1.5 * std::sin(i * cb::geometry::pi / 250)});
+  plane.things.push_back({.outline = cb::geometry::Polygon(round)});
+  CHECK(cb::OccludedObserver{.resolution = 0.05}.sees_object(plane, cb::Slot{0}, cb::Slot{0}));
+  CHECK_FALSE(cb::OccludedObserver{.resolution = 0.15}.sees_object(plane, cb::Slot{0}, cb::Slot{0}));
+}
+
 TEST_CASE("an object behind a truck is no neighbour, and in no prediction, until it is seen") {
   Observed<cb::OccludedObserver> world(straight_road(1, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
