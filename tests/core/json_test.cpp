@@ -6,9 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/open_loop/motion_primitives.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "../support/allocations.hpp"
@@ -38,7 +41,42 @@ std::string refusal(std::string const& text) {
   return "accepted";
 }
 
+/// Lists and optionals whose defaults are not those of what they hold.
+struct Prefilled {
+  std::vector<Window> windows{{.from = -7.0}, {.to = 7.0}};
+  std::optional<Window> window = Window{.to = 7.0};
+  std::optional<double> number = 7.0;
+
+  static constexpr char const* name = "prefilled";
+  static constexpr auto parameters() {
+    using P = Prefilled;
+    return parameter_list(parameter("windows", &P::windows, "when"), parameter("window", &P::window, "when"),
+                          parameter("number", &P::number, "-", any_finite, "a number"));
+  }
+};
+
 }  // namespace
+
+TEST_CASE("lists and optionals read back, whatever their defaults hold") {
+  auto const survives = []<class T>(T const& object) {
+    for (auto const detail : {JsonDetail::differences, JsonDetail::everything}) {
+      auto const text = to_json(object, detail);
+      CAPTURE(text);
+      CHECK(equal_parameters(from_json<T>(text), object));
+    }
+    CHECK(equal_parameters(from_binary<T>(to_binary(object)), object));
+  };
+  CHECK(to_json(Prefilled{.windows = {}}) == "{\"windows\": []}\n");
+  survives(Prefilled{});
+  survives(Prefilled{.windows = {{}, {}, {}}, .window = Window{}, .number = 0.0});
+  survives(Prefilled{.windows = {}, .window = {}, .number = {}});
+  survives(MotionPrimitives{.primitives = {{0.0, 0.0}, {0.0, 0.1}}});
+  using Kind = MacroActions::Kind;
+  survives(MacroActions::of({{Kind::keep_gap}, {Kind::stay, -2.0}, {Kind::change_left}, {Kind::change_right}}));
+  Prefilled read{.window = {}};
+  read_json(read, R"({"window": {"from": -1}})");
+  CHECK(read.window == Window{-1.0, 7.0});
+}
 
 TEST_CASE("a described struct reads back as the same bits") {
   for (auto const detail : {JsonDetail::differences, JsonDetail::everything})
