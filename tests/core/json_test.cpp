@@ -41,6 +41,15 @@ std::string refusal(std::string const& text) {
   return "accepted";
 }
 
+enum class Mode : std::uint32_t { city, motorway };
+struct Driver {
+  Mode mode = Mode::city;
+
+  static constexpr auto parameters() {
+    return parameter_list(cambium::choice("mode", &Driver::mode, "city|motorway", "where it drives"));
+  }
+};
+
 /// Lists and optionals whose defaults are not those of what they hold.
 struct Prefilled {
   std::vector<Window> windows{{.from = -7.0}, {.to = 7.0}};
@@ -149,6 +158,11 @@ TEST_CASE("an error says where it is and what to do") {
                        "way: holds a struct that is not described, or has no default: a file cannot hold it; give it "
                        "`parameters()` and `name`",
                        ParameterError);
+}
+
+TEST_CASE("a choice is written by name, whatever integer its enum is") {
+  CHECK(to_json(Driver{Mode::motorway}) == "{\"mode\": \"motorway\"}\n");
+  CHECK(from_json<Driver>(R"({"mode": "motorway"})").mode == Mode::motorway);
 }
 
 TEST_CASE("damaged texts are read or refused, never worse") {
