@@ -39,6 +39,15 @@ struct Named {
   }
 };
 
+struct Narrow {
+  float width = 1.0f;
+
+  static constexpr char const* name = "narrow";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("width", &Narrow::width, "m", any_finite, "in single precision"));
+  }
+};
+
 static_assert(OneOf<Search, Named>::place<Search> == 0 && OneOf<Search, Named>::place<Named> == 1 &&
               OneOf<Search, Named>::place<State> == 2);
 
@@ -84,6 +93,7 @@ TEST_CASE("a key that names no number, or one out of range, is an error with the
   CHECK(refusal(Mobil{}, "idm", 1.0) == "f.json: idm: there is no number of that key; name a number in it");
   CHECK(refusal(Mobil{}, "", 1.0).find("there is no number of that key") != std::string::npos);
   CHECK(refusal(Search{}, "discount", 1.5) == "f.json: discount: is 1.5; give a value in [0, 1]");
+  CHECK(refusal(Narrow{}, "width", 1e300) == "f.json: width: is inf m; give a value in (-inf, inf) m");
   CHECK(refusal(Search{}, "depth", 4.0) == "f.json: depth: is no real number; name another parameter");
   CHECK(refusal(Search{}, "parts.low", 0.5).find("there is no number of that key") != std::string::npos);
   CHECK(refusal(Search{}, "speed.clipped_normal.low", 0.5).find("give one of uniform") != std::string::npos);

@@ -438,9 +438,10 @@ CAMBIUM_COLD void set_number(TypeInfo const& type, void* object, std::string_vie
   if (!here->is_plain()) refuse("name a number in it");
   if (!here->is_real()) throw ParameterError(place, "is no real number", "name another parameter");
   auto value = PlainValue::at(object, *here);
-  value.number = number;
+  bool const is_single = here->kind == TypeInfo::Kind::single_precision;
+  value.number = is_single ? static_cast<double>(static_cast<float>(number)) : number;  // as it is stored
   if (!value.in(info->range))
-    throw ParameterError(place, "is " + with_unit(number_text(number), info->unit),
+    throw ParameterError(place, "is " + with_unit(number_text(value.number), info->unit),
                          "give a value in " + with_unit(range_text(*info), info->unit));
   value.store(object, *here);
 }
