@@ -126,12 +126,17 @@ TEST_CASE("an error says where it is and what to do") {
   CHECK(refusal(R"({"number": "1"})") == "f.json: everything.number: is \"1\"; give a number");
   CHECK(refusal(R"({"number": null})") == "f.json: everything.number: is null; give a number");
   CHECK(refusal(R"({"number": -2000})") == "f.json: everything.number: is -2000 m; give a value in [-1000, inf] m");
-  CHECK(refusal(R"({"integer": 1.5})") == "f.json: everything.integer: is 1.5; give an integer");
+  CHECK(refusal(R"({"integer": 1.5})") ==
+        "f.json: everything.integer: is 1.5; give an integer without fraction or exponent, from -2147483648 to "
+        "2147483647");
   CHECK(refusal(R"({"integer": 3000000000})") ==
-        "f.json: everything.integer: is 3000000000; give an integer from -2147483648 to 2147483647");
-  CHECK(refusal(R"({"small": 256})") == "f.json: everything.small: is 256; give an integer from 0 to 255");
+        "f.json: everything.integer: is 3000000000; give an integer without fraction or exponent, from -2147483648 to "
+        "2147483647");
+  CHECK(refusal(R"({"small": 256})") ==
+        "f.json: everything.small: is 256; give an integer without fraction or exponent, from 0 to 255");
   CHECK(refusal(R"({"natural": -1})") ==
-        "f.json: everything.natural: is -1; give an integer from 0 to 18446744073709551615");
+        "f.json: everything.natural: is -1; give an integer without fraction or exponent, from 0 to "
+        "18446744073709551615");
   CHECK(refusal(R"({"truth": 1})") == "f.json: everything.truth: is 1; give true or false");
   CHECK(refusal(R"({"mood": "callm"})") == "f.json: everything.mood: is \"callm\"; is it calm?");
   CHECK(refusal(R"({"mood": 0})") == "f.json: everything.mood: is 0; give one of calm, hasty, in quotes");

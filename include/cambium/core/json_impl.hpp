@@ -286,15 +286,16 @@ class JsonReader {
   [[nodiscard]] PlainValue integer(ParameterPath const& path, TypeInfo const& type, JsonValue const& json) const {
     auto const* const natural = json.get<std::uint64_t>();
     auto const* const negative = json.get<std::int64_t>();
-    if (natural == nullptr && negative == nullptr) refuse(path, json, "an integer");
     auto const least = PlainValue::lowest(type);
     auto const most = type.kind == TypeInfo::Kind::signed_integer || type.kind == TypeInfo::Kind::unsigned_integer
                           ? PlainValue::highest(type)
                           : with_bits(type, PlainValue::highest(type).bits - 1);  // the highest id is none
+    bool const is_integer = natural != nullptr || negative != nullptr;
     bool const is_below = negative != nullptr && (!type.is_signed || *negative < static_cast<std::int64_t>(least.bits));
     bool const is_above = natural != nullptr && *natural > most.bits;
-    if (is_below || is_above)
-      refuse(path, json, "an integer from " + value_text({}, least) + " to " + value_text({}, most));
+    if (!is_integer || is_below || is_above)
+      refuse(path, json,
+             "an integer without fraction or exponent, from " + value_text({}, least) + " to " + value_text({}, most));
     auto const bits = natural != nullptr ? *natural : static_cast<std::uint64_t>(*negative);
     return {type.kind, negative != nullptr ? static_cast<double>(*negative) : static_cast<double>(bits), bits};
   }
