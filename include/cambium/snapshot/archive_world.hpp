@@ -109,9 +109,9 @@ template <bool is_memory, class T, class... Around>
 }
 
 /// As `check_described` for what is either one struct or a set of them.
-template <bool is_memory, class Slot>
+template <bool is_memory, class Part>
 [[nodiscard]] constexpr bool check_slot() {
-  return check_field<is_memory, std::conditional_t<Variant<Slot>, Slot, std::variant<Slot>>>();
+  return check_field<is_memory, std::conditional_t<Variant<Part>, Part, std::variant<Part>>>();
 }
 
 /// Hash of all that traffic knows of a map, and of the options it was built with. Default options add nothing, so a
@@ -161,7 +161,7 @@ struct ArchivedAgent {
     return parameter_list(parameter("id", &P::id, "its name"),
                           parameter("road", &P::road, "-", Range{0, 4294967295.0}, "number of its road"),
                           parameter("shape", &P::shape, "its outline"),
-                          parameter("behavior", &P::behavior, "one of the world's behaviors"),
+                          parameter("behavior", &P::behavior, "one of the world's behaviours"),
                           parameter("execution", &P::execution, "how it tracks its plans"),
                           parameter("dynamics", &P::dynamics, "the vehicle model"),
                           parameter("observer", &P::observer, "how it sees the others"),
@@ -419,7 +419,7 @@ template <class World>
 
 namespace boost::serialization {
 
-/// A world, also as a member of a class of one's own. When it is loaded, it must have the map already.
+/// A world, also as a member of your own class. When it is loaded, it must have the map already.
 template <class Archive, class T>
 requires(cambium::detail::is_world<T>) void serialize(Archive& archive, T& world, unsigned) {
   using namespace cambium::detail;
