@@ -1,6 +1,6 @@
 /// The room `snapshot`: the exact state of worlds and planners, as a car or a simulation left it, in a file; and back.
 ///
-///     worlds, planners, memories, classes of one's own   --to_snapshot-->   bytes   --from_snapshot-->   the same
+///     worlds, planners, memories, your own classes       --to_snapshot-->   bytes   --from_snapshot-->   the same
 ///
 /// A snapshot holds everything that can influence the next step: roster, frame, what behaviours and observers remember,
 /// and which map it belongs to. It does not hold the environment: logs, threads, scratch memory. After Minnerup et al.

@@ -113,6 +113,7 @@ TEST_CASE("a report of known results has their figures") {
   CHECK(pair.changes.front().after == doctest::Approx(10.0 / 14));
 
   auto const tables = tables_of(report);
+  CHECK(tables_of(report, 0).size() == tables_of(report, 1).size());
   auto const overview = text_of(tables.front());
   CHECK(overview.find("successes (collisions)") != overview.npos);
   CHECK(tables.front().rows.back()[0] == "mobil");

@@ -89,6 +89,8 @@ TEST_CASE("results do not depend on threads, shards or interruptions") {
   CHECK(results_of(one) == results_of(four));
   auto const half = run_benchmark(set, contenders(), first, {.executor = on_threads(2), .shard = 0, .shards = 2});
   CHECK(half == 30);
+  for (std::size_t const shards : {0u, 2u})
+    CHECK_THROWS_AS(run_benchmark(set, contenders(), first, {.shard = 2, .shards = shards}), ParameterError);
   CHECK(half + run_benchmark(set, contenders(), second, {.executor = on_threads(2), .shard = 1, .shards = 2}) == 60);
   first.begin_run("now", "the first");
   second.begin_run("now", "the second");

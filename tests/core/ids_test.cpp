@@ -1,11 +1,20 @@
 #include "cambium/core/ids.hpp"
 
+#include <cstdint>
 #include <type_traits>
 
 #include <doctest/doctest.h>
 
 using namespace cambium;
 
+namespace {
+enum class DepotId : std::uint16_t {};
+enum class Mode : std::uint32_t { city, motorway };
+}  // namespace
+template <>
+inline constexpr bool cambium::is_id<DepotId> = true;
+
+static_assert(StrongId<DepotId> && !StrongId<Mode>);
 static_assert(StrongId<AgentId> && StrongId<LaneId> && !StrongId<int>);
 static_assert(!std::is_convertible_v<AgentId, LaneId> && !std::is_convertible_v<AgentId, int>);
 static_assert(sizeof(AgentId) == 4);

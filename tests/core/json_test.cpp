@@ -6,9 +6,12 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/open_loop/motion_primitives.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "../support/allocations.hpp"
@@ -38,7 +41,51 @@ std::string refusal(std::string const& text) {
   return "accepted";
 }
 
+enum class Mode : std::uint32_t { city, motorway };
+struct Driver {
+  Mode mode = Mode::city;
+
+  static constexpr auto parameters() {
+    return parameter_list(cambium::choice("mode", &Driver::mode, "city|motorway", "where it drives"));
+  }
+};
+
+/// Lists and optionals whose defaults are not those of what they hold.
+struct Prefilled {
+  std::vector<Window> windows{{.from = -7.0}, {.to = 7.0}};
+  std::optional<Window> window = Window{.to = 7.0};
+  std::optional<double> number = 7.0;
+
+  static constexpr char const* name = "prefilled";
+  static constexpr auto parameters() {
+    using P = Prefilled;
+    return parameter_list(parameter("windows", &P::windows, "when"), parameter("window", &P::window, "when"),
+                          parameter("number", &P::number, "-", any_finite, "a number"));
+  }
+};
+
 }  // namespace
+
+TEST_CASE("lists and optionals read back, whatever their defaults hold") {
+  auto const survives = []<class T>(T const& object) {
+    for (auto const detail : {JsonDetail::differences, JsonDetail::everything}) {
+      auto const text = to_json(object, detail);
+      CAPTURE(text);
+      CHECK(equal_parameters(from_json<T>(text), object));
+    }
+    CHECK(equal_parameters(from_binary<T>(to_binary(object)), object));
+  };
+  CHECK(to_json(Prefilled{.windows = {}}) == "{\"windows\": []}\n");
+  survives(Prefilled{});
+  survives(Prefilled{.windows = {{}, {}, {}}, .window = Window{}, .number = 0.0});
+  survives(Prefilled{.windows = {}, .window = {}, .number = {}});
+  survives(MotionPrimitives{.primitives = {{0.0, 0.0}, {0.0, 0.1}}});
+  using Kind = MacroActions::Kind;
+  survives(MacroActions::of({{Kind::keep_gap}, {Kind::stay, -2.0}, {Kind::change_left}, {Kind::change_right}}));
+  Prefilled read{.window = {}};
+  read_json(read, R"({"window": {"from": -1}})");
+  CHECK(read.window == Window{-1.0, 7.0});
+}
 
 TEST_CASE("a described struct reads back as the same bits") {
   for (auto const detail : {JsonDetail::differences, JsonDetail::everything})
@@ -79,12 +126,17 @@ TEST_CASE("an error says where it is and what to do") {
   CHECK(refusal(R"({"number": "1"})") == "f.json: everything.number: is \"1\"; give a number");
   CHECK(refusal(R"({"number": null})") == "f.json: everything.number: is null; give a number");
   CHECK(refusal(R"({"number": -2000})") == "f.json: everything.number: is -2000 m; give a value in [-1000, inf] m");
-  CHECK(refusal(R"({"integer": 1.5})") == "f.json: everything.integer: is 1.5; give an integer");
+  CHECK(refusal(R"({"integer": 1.5})") ==
+        "f.json: everything.integer: is 1.5; give an integer without fraction or exponent, from -2147483648 to "
+        "2147483647");
   CHECK(refusal(R"({"integer": 3000000000})") ==
-        "f.json: everything.integer: is 3000000000; give an integer from -2147483648 to 2147483647");
-  CHECK(refusal(R"({"small": 256})") == "f.json: everything.small: is 256; give an integer from 0 to 255");
+        "f.json: everything.integer: is 3000000000; give an integer without fraction or exponent, from -2147483648 to "
+        "2147483647");
+  CHECK(refusal(R"({"small": 256})") ==
+        "f.json: everything.small: is 256; give an integer without fraction or exponent, from 0 to 255");
   CHECK(refusal(R"({"natural": -1})") ==
-        "f.json: everything.natural: is -1; give an integer from 0 to 18446744073709551615");
+        "f.json: everything.natural: is -1; give an integer without fraction or exponent, from 0 to "
+        "18446744073709551615");
   CHECK(refusal(R"({"truth": 1})") == "f.json: everything.truth: is 1; give true or false");
   CHECK(refusal(R"({"mood": "callm"})") == "f.json: everything.mood: is \"callm\"; is it calm?");
   CHECK(refusal(R"({"mood": 0})") == "f.json: everything.mood: is 0; give one of calm, hasty, in quotes");
@@ -111,6 +163,11 @@ TEST_CASE("an error says where it is and what to do") {
                        "way: holds a struct that is not described, or has no default: a file cannot hold it; give it "
                        "`parameters()` and `name`",
                        ParameterError);
+}
+
+TEST_CASE("a choice is written by name, whatever integer its enum is") {
+  CHECK(to_json(Driver{Mode::motorway}) == "{\"mode\": \"motorway\"}\n");
+  CHECK(from_json<Driver>(R"({"mode": "motorway"})").mode == Mode::motorway);
 }
 
 TEST_CASE("damaged texts are read or refused, never worse") {

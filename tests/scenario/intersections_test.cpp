@@ -141,8 +141,8 @@ TEST_CASE("so it is at the junctions of the corpus") {
         check_all_pass(map, name, support::runs(50), {.most_vehicles = 30}, dt);
 }
 
-// Each gridlocked: three drivers left their places to wait in one step (run 48), or passed places so far before the
-// junctions that others did not see that they were inside.
+// Three drivers may leave their places to wait in one step (run 48), or pass places so far before the junction that
+// others could take them for being outside: either would gridlock.
 TEST_CASE("no three vehicles block each other for good that leave their places to wait together") {
   JunctionTraffic const dense{.most_vehicles = 30, .scattered_ids = true};
   Tally tally;

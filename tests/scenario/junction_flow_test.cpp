@@ -91,8 +91,8 @@ TEST_CASE("a saturated crossing keeps flowing, with lights and without") {
   check_flow(map, {41.0, 34.0}, true);
 }
 
-// Aggressive drivers brake for their lines harder than by their `safe_deceleration`. They seemed to be beyond the lines
-// then, and three or more gridlocked.
+// Aggressive drivers brake harder for their lines than `safe_deceleration`; if others took them for unable to stop,
+// three or more would gridlock.
 TEST_CASE("a saturated crossing keeps flowing, whatever the drivers' temperaments") {
   auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
   auto const timid = presets::timid<Intersection>(), normal = presets::normal<Intersection>(),
@@ -124,8 +124,8 @@ TEST_CASE("a saturated crossing of single lanes passes 93 % of what the manual s
   check_flow(support::corpus_map("4way_intersection.xodr"), {0.93 * 25.4, 16.0});
 }
 
-// Three vehicles gridlocked here when drivers did not count as inside who had passed its place to wait, but not yet the
-// edge of the junction. Nobody passed after the warm-up.
+// A driver counts as inside once it has passed its place to wait, even before the edge of the junction; otherwise three
+// vehicles would gridlock here.
 TEST_CASE("who has left its place to wait is let through, before the edge of the junction too") {
   auto const map = support::corpus_map("threeway_intersection.xodr");
   if (!map) return;

@@ -165,7 +165,7 @@ TEST_CASE("an error in a scenario file says where it is and what to do") {
                            with_agents(good + R"(, {"id": 0, "position": {"x": 60, "y": -5.25}, "speed": 9})")})
     CHECK(refusal(text).find("f.json: scenarios[0]: ") == 0);
   CHECK(refusal(with_agents(R"({"id": -1, "position": {"x": 20, "y": -5.25}})"))
-            .find("give an integer from 0 to 429496729") != std::string::npos);
+            .find("give an integer without fraction or exponent, from 0 to 429496729") != std::string::npos);
 }
 
 TEST_CASE("the hash of a set changes with what is in its maps") {

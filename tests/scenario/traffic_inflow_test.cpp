@@ -118,6 +118,7 @@ TEST_CASE("nobody enters into a queue that has grown back to the source, and the
   CHECK(world.size() <= 10);
   CHECK(inflow.waiting(0) > 70);
   Inflow saturated(*road, {{.lane = find_sources(*road).at(0).lane, .per_hour = TrafficSource::saturated}}, 1);
+  CHECK_NOTHROW(check_parameters(saturated));
   saturated.enter(
       world, [&](TrafficSource const& source, RandomStream& random) { return next_vehicle(*road, source, random); });
   CHECK(saturated.waiting(0) == 1);

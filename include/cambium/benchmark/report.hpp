@@ -34,7 +34,8 @@ struct Report {
 [[nodiscard]] Report make_report(std::vector<ResultGroup> groups, double level = 0.05);
 
 /// The tables of a report: an overview; for each set the outcomes, the means and the planning times of each behaviour,
-/// and the differences between each two; then the comparisons. Tables of means have at most `columns` measures.
+/// and the differences between each two; then the comparisons. Tables of means have at most `columns` measures, but at
+/// least one.
 [[nodiscard]] std::vector<Table> tables_of(Report const& report, std::size_t columns = 7);
 
 /// One table a set of what matters most, without intervals: outcomes, duration, closed-loop score and planning time of

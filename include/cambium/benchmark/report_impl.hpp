@@ -263,6 +263,7 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
     else if (!measures()[m].is_time && measures()[m].key != "steps")  // the duration says that
       means.push_back(m);
   }
+  columns = std::max(columns, std::size_t{1});
   auto const parts = (means.size() + columns - 1) / columns;
   columns = (means.size() + parts - 1) / parts;  // tables of equal widths
   tables.push_back(detail::overview_of(report.groups));

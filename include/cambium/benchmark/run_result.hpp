@@ -95,8 +95,8 @@ struct RunResult {
     return join_parameters(outcome, driving);
   }
 
-  /// Which values of a field are better. Better or worse are outcomes, safety and the closed-loop score. Neither are
-  /// speeds, gaps and the like, of which a good driver may have more or less; and time-outs, which lack success.
+  /// Whether more or less of a field is better. Outcomes, safety and the closed-loop score are judged. Speeds and gaps
+  /// are not, because a good driver may have more or less; nor are time-outs, which already lack success.
   [[nodiscard]] static Better better(std::string_view field) {
     for (char const* more : {"success", "rss_compliance", "closed_loop_score"})
       if (field == more) return Better::more;

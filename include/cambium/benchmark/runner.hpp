@@ -156,11 +156,16 @@ class ReplayFolder {
 /// Runs each contender on each scenario of a set, and adds the results to `store` as they come. Jobs whose results the
 /// store has are left out, so a benchmark that was killed continues. A run that throws, or whose step fails,
 /// is a result with its `error`. Returns the number of jobs run. Throws `StoreError` if the store cannot be written,
-/// `ParameterError` if the set is invalid, or if two contenders have the same name and parameters.
+/// `ParameterError` if the set is invalid, if there is no such shard, or if two contenders have the same name and
+/// parameters.
 template <class World>
 std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
                           ResultStore& store, BenchmarkOptions const& options = {}) {
   check_parameters(set, "benchmark");
+  if (options.shard >= options.shards)
+    throw ParameterError("benchmark",
+                         "has no shard " + std::to_string(options.shard) + " of " + std::to_string(options.shards),
+                         "give at least 1 shard, and one of 0 to shards - 1");
   auto const hash = set.hash();
   auto const count = set.scenarios.size();
   store.add_set(hash, set.title, count, options.source);

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <limits>
+#include <string>
 #include <type_traits>
+
+#include "cambium/core/ids.hpp"
 
 namespace cambium {
 
@@ -43,17 +46,49 @@ struct Parameter : ParameterInfo {
   Field Owner::*field;
 };
 
+namespace detail {
+/// What a field consists of: of a list or an optional the type of its elements, which may still be incomplete.
+template <class Field>
+struct PartOf {
+  using type = Field;
+};
+template <class Field>
+requires requires { typename Field::value_type; }
+struct PartOf<Field> {
+  using type = typename Field::value_type;
+};
+template <class Field>
+requires requires { typename Field::element_type::value_type; }  // a pointer to a list
+struct PartOf<Field> {
+  using type = typename Field::element_type::value_type;
+};
+template <>
+struct PartOf<std::string> {
+  using type = std::string;
+};
+
+template <class Field>
+constexpr void check_no_choice() {
+  using Part = typename PartOf<Field>::type;
+  static_assert(!std::is_enum_v<Part> || StrongId<Part>,
+                "cambium::parameter: describe an enum by choice(name, field, \"a|b\", sentence)");
+}
+}  // namespace detail
+
 /// Describes one field.
 template <class Owner, class Field>
 [[nodiscard]] constexpr Parameter<Owner, Field> parameter(char const* name, Field Owner::*field, char const* unit,
                                                           Range range, char const* sentence) {
+  detail::check_no_choice<Field>();
   return {{name, unit, range, sentence}, field};
 }
 
 /// Describes a field without unit and range: a bool, an id, a text, or a struct, a `OneOf` or a list of these.
 template <class Owner, class Field>
 [[nodiscard]] constexpr Parameter<Owner, Field> parameter(char const* name, Field Owner::*field, char const* sentence) {
-  static_assert(!std::is_arithmetic_v<Field> || std::is_same_v<Field, bool>,
+  detail::check_no_choice<Field>();
+  using Part = typename detail::PartOf<Field>::type;
+  static_assert(!std::is_arithmetic_v<Part> || std::is_same_v<Part, bool>,
                 "cambium::parameter: a number needs a unit and a range: parameter(name, field, \"m/s\", Range{0, 70}, "
                 "sentence)");
   return {{name, "-", {}, sentence}, field};

@@ -30,9 +30,22 @@ enum class CorridorId : std::uint16_t {};
 /// Number of a piece (one lane's stretch) in its `map::LaneCorridor`.
 enum class PieceId : std::uint16_t {};
 
+namespace detail {
+template <class T, class... Ids>
+inline constexpr bool is_among = (std::is_same_v<T, Ids> || ...);
+}  // namespace detail
+
+/// Whether an enum is an id. It is true for the ids above; for your own, say
+/// `template <> inline constexpr bool cambium::is_id<DepotId> = true;`.
+template <class T>
+inline constexpr bool is_id =
+    detail::is_among<T, AgentId, ObjectId, Slot, RoadId, LaneId, JunctionId, LightId, CorridorId, PieceId>;
+
+/// An enum that numbers things and has no named values. Its highest number is `none`; files hold the number, which
+/// needs neither names nor a range.
 template <class Id>
-concept StrongId = std::is_enum_v<Id> &&(std::is_same_v<std::underlying_type_t<Id>, std::uint32_t> ||
-                                         std::is_same_v<std::underlying_type_t<Id>, std::uint16_t>);
+concept StrongId = is_id<Id> && std::is_enum_v<Id> &&(std::is_same_v<std::underlying_type_t<Id>, std::uint32_t> ||
+                                                      std::is_same_v<std::underlying_type_t<Id>, std::uint16_t>);
 
 /// The invalid id, which names nothing.
 template <StrongId Id>

@@ -14,9 +14,9 @@
 ///
 ///   `{"idm": {"desired_speed": 14.5}, "patience": 2}`
 ///
-/// A field that is absent keeps its default, so files hold what is special. A choice is written by its name, an
-/// alternative as `{"its_name": {...}}`, or `"its_name"` if all is as usual, infinity as "inf". Numbers are written
-/// such that they read back as the same bits.
+/// An absent field keeps its default, so a file holds only what differs. A choice is written by name; an alternative as
+/// `{"its_name": {...}}`, or just `"its_name"` if all its fields have their defaults; infinity as "inf". Numbers are
+/// written such that they read back as the same bits.
 namespace cambium {
 
 /// How much `to_json` writes.

@@ -21,6 +21,12 @@
 
 namespace cambium::detail {
 
+/// What an optional holds by default: what `usual` holds, else the default of its type.
+[[nodiscard]] inline void const* usual_inner(TypeInfo const& optional, void const* usual) {
+  auto const* const held = optional.held(usual);
+  return held != nullptr ? held : optional.element().usual();
+}
+
 /// Turns a struct into a document.
 class JsonWriter {
  public:
@@ -38,9 +44,11 @@ class JsonWriter {
       case Kind::one_of:
         return write_alternative(path, type, object, usual, json);
       case Kind::optional:
-        if (auto const* const held = type.held(object))
-          return write(path, info, type.element(), held, type.element().usual(), json), true;
-        return false;
+        if (auto const* const held = type.held(object)) {
+          bool const differs = write(path, info, type.element(), held, usual_inner(type, usual), json);
+          return differs || type.held(usual) == nullptr;
+        }
+        return type.held(usual) != nullptr;
       case Kind::list: {
         auto const elements = type.elements(object);
         std::vector<JsonValue> items(elements.count);
@@ -129,7 +137,7 @@ class JsonReader {
  public:
   JsonReader(std::string const& file, LaneNames const* lanes) : file_(file), lanes_(lanes) {}
 
-  /// Reads a value. `usual`: what an alternative is at first, if the object holds another one.
+  /// Reads a value. `usual`: what an alternative or an optional is at first, if the object holds another or nothing.
   void read(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type, void* object, void const* usual,
             JsonValue const& json) const {
     using Kind = TypeInfo::Kind;
@@ -139,10 +147,7 @@ class JsonReader {
       case Kind::one_of:
         return read_alternative(path, type, object, usual, json);
       case Kind::optional:
-        type.select(object, json.value.index() != 0);
-        if (auto const* const held = type.held(object))
-          read(path, info, type.element(), const_cast<void*>(held), type.element().usual(), json);
-        return;
+        return read_optional(path, info, type, object, usual, json);
       case Kind::list: {
         auto const* const items = json.items();
         if (items == nullptr) refuse(path, json, "a list");
@@ -152,6 +157,7 @@ class JsonReader {
               std::string(type.least < type.most ? "give at most " : "give ") + std::to_string(type.most));
         auto const& element = type.element();
         return type.fill(object, items->size(), where(path), [&](std::size_t i, void* item, void const*) {
+          element.assign(item, element.usual());  // what the file's elements differ from
           read(path.at(i), info, element, item, element.usual(), (*items)[i]);
         });
       }
@@ -182,6 +188,18 @@ class JsonReader {
   }
 
  private:
+  void read_optional(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type, void* object,
+                     void const* usual, JsonValue const& json) const {
+    bool const is_null = json.value.index() == 0, was_empty = type.held(object) == nullptr;
+    type.select(object, !is_null);
+    if (is_null) return;
+    auto const& element = type.element();
+    auto* const held = const_cast<void*>(type.held(object));
+    auto const* const blank = usual_inner(type, usual);
+    if (was_empty) element.assign(held, blank);
+    read(path, info, element, held, blank, json);
+  }
+
   void read_alternative(ParameterPath const& path, TypeInfo const& type, void* object, void const* usual,
                         JsonValue const& json) const {
     auto const* const members = json.members();
@@ -268,15 +286,16 @@ class JsonReader {
   [[nodiscard]] PlainValue integer(ParameterPath const& path, TypeInfo const& type, JsonValue const& json) const {
     auto const* const natural = json.get<std::uint64_t>();
     auto const* const negative = json.get<std::int64_t>();
-    if (natural == nullptr && negative == nullptr) refuse(path, json, "an integer");
     auto const least = PlainValue::lowest(type);
     auto const most = type.kind == TypeInfo::Kind::signed_integer || type.kind == TypeInfo::Kind::unsigned_integer
                           ? PlainValue::highest(type)
                           : with_bits(type, PlainValue::highest(type).bits - 1);  // the highest id is none
+    bool const is_integer = natural != nullptr || negative != nullptr;
     bool const is_below = negative != nullptr && (!type.is_signed || *negative < static_cast<std::int64_t>(least.bits));
     bool const is_above = natural != nullptr && *natural > most.bits;
-    if (is_below || is_above)
-      refuse(path, json, "an integer from " + value_text({}, least) + " to " + value_text({}, most));
+    if (!is_integer || is_below || is_above)
+      refuse(path, json,
+             "an integer without fraction or exponent, from " + value_text({}, least) + " to " + value_text({}, most));
     auto const bits = natural != nullptr ? *natural : static_cast<std::uint64_t>(*negative);
     return {type.kind, negative != nullptr ? static_cast<double>(*negative) : static_cast<double>(bits), bits};
   }

@@ -42,7 +42,8 @@ template <class List>
   for (auto const& name : names) {
     auto const far = edit_distance(word, name);
     bool const begins = word.size() > 3 && name.starts_with(word);
-    if (begins || far <= std::max<std::size_t>(1, word.size() / 3)) found.emplace_back(begins ? 0 : far, name);
+    bool const is_near = far < word.size() && far <= std::max<std::size_t>(1, word.size() / 3);
+    if (begins || is_near) found.emplace_back(begins ? 0 : far, name);
   }
   std::sort(found.begin(), found.end());
   found.resize(std::min<std::size_t>(found.size(), 3));

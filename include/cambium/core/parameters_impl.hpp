@@ -396,10 +396,11 @@ CAMBIUM_COLD bool are_equal(TypeInfo const& type, void const* a, void const* b, 
 
 CAMBIUM_COLD void set_number(TypeInfo const& type, void* object, std::string_view key, double number,
                              std::string const& where) {
-  auto const place = (where.empty() ? "" : where + ": ") + std::string(key);
+  auto const place = (where.empty() ? "" : where + ": ") + (key.empty() ? "the empty key" : std::string(key));
   auto const refuse = [&](std::string const& remedy) {
     throw ParameterError(place, "there is no number of that key", remedy);
   };
+  char const* const of_list = "elements of lists have no key: set the list in a file";
   auto const* here = &type;
   ParameterInfo const* info = nullptr;
   auto const enter = [&](TypeInfo const& part, void const* at) {
@@ -432,15 +433,17 @@ CAMBIUM_COLD void set_number(TypeInfo const& type, void* object, std::string_vie
       }
       names = names_of(fields);
     }
-    refuse(suggestion(name, names));
+    bool const is_element = here->kind == TypeInfo::Kind::list || name.find('[') != name.npos;
+    refuse(is_element ? of_list : suggestion(name, names));
   }
   enter_optional();
-  if (!here->is_plain()) refuse("name a number in it");
+  if (!here->is_plain()) refuse(here->kind == TypeInfo::Kind::list ? of_list : "name a number in it");
   if (!here->is_real()) throw ParameterError(place, "is no real number", "name another parameter");
   auto value = PlainValue::at(object, *here);
-  value.number = number;
+  bool const is_single = here->kind == TypeInfo::Kind::single_precision;
+  value.number = is_single ? static_cast<double>(static_cast<float>(number)) : number;  // as it is stored
   if (!value.in(info->range))
-    throw ParameterError(place, "is " + with_unit(number_text(number), info->unit),
+    throw ParameterError(place, "is " + with_unit(number_text(value.number), info->unit),
                          "give a value in " + with_unit(range_text(*info), info->unit));
   value.store(object, *here);
 }

@@ -174,8 +174,8 @@ struct HardBraking {
   }
 };
 
-/// How hard others within `range` [m] brake: the sum of what their decelerations exceed `comfortable`, squared
-/// [m^2/s^4]. As a term with a negative weight, it keeps a planner from making others brake, who may not do it.
+/// The sum, over others within `range` [m], of the squared excess of their deceleration over `comfortable` [m^2/s^4].
+/// With a negative weight it keeps a planner from relying on others to brake.
 struct OthersBraking {
   double comfortable = 1.0;  ///< [m/s^2]
   double range = 60.0;       ///< [m]

@@ -95,7 +95,8 @@ struct CandidateReport : PlannerReport<World, Memory> {
 /// `think`. It has `step` [s], a `budget`, a `Workspace` and a `Report` (`CandidateWorkspace`, `CandidateReport`), and
 ///
 /// - `compare(view, memory, workspace, clock)`: predicts, and fills in `candidates`, as many as the clock permits, and
-///   `chosen`.
+///   `chosen`. `clock` is a copy of `budget` that has been started; ask `workspace.goes_on(clock, done)` before each
+///   candidate.
 /// - `drive(view, memory, dt, workspace)`: the plan for the next `dt` [s] by the chosen candidate, and the memory then.
 ///   It brakes if none is chosen.
 /// - `foresee(view, memory, workspace)`: the frames of all agents, now and after each `step`, if ego drives on so.

@@ -29,9 +29,8 @@ CAMBIUM_COLD geometry::Shape random_shape(Map const& map, VehicleMix const& mix,
   return shape == geometry::bicycle() || fits_route(map, route, shape) ? shape : geometry::car();
 }
 
-/// How far an agent put on lane `from` may drive before it is where bodies of those in the junction may reach [m];
-/// negative where it is already, or where the lane is too narrow for it, as where it opens, or has no width, so that
-/// the agent is in the lane beside.
+/// Distance [m] that an agent on lane `from` can drive before its body reaches the junction's conflict zones. Negative
+/// if it is in one already, or if the lane is too narrow for it (for example where it opens).
 CAMBIUM_COLD double room_before_zones(JunctionSite::World const& world, AgentId id, LaneId from) {
   auto const slot = world.slot_of(id);
   auto const& agent = world.roster().agents[slot];

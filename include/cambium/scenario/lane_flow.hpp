@@ -63,7 +63,7 @@ struct DriverShare {
                        choice("vehicle", &P::vehicle, "any|car|van|truck|bus|bicycle|pedestrian",
                               "any: by the mix of the traffic"),
                        parameter("behavior", &P::behavior, "of these drivers"),
-                       parameter("drawn", &P::drawn, "parameters of the behavior that differ by driver")),
+                       parameter("drawn", &P::drawn, "parameters of the behaviour that differ by driver")),
         detail::if_described(parameter("observer", &P::observer, "how they see the others")));
   }
 };

@@ -207,7 +207,8 @@ class TrafficInflow {
       using P = Queue;
       return parameter_list(parameter("lane", &P::lane, "of its source"),
                             parameter("way", &P::way, "m", any_finite, "of its source"),
-                            parameter("per_hour", &P::per_hour, "1/h", positive, "demand; inf: saturated"),
+                            parameter("per_hour", &P::per_hour, "1/h", Range{positive.low, TrafficSource::saturated},
+                                      "demand; inf: saturated"),
                             parameter("random", &P::random, "for arrivals and agents"),
                             parameter("arrival", &P::arrival, "s", any_finite, "of the next agent"),
                             parameter("waiting", &P::waiting, "-", Range{0, 1e9}, "agents without room"),

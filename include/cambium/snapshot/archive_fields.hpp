@@ -110,7 +110,7 @@ concept SerializesItself = requires(T object, Archive& archive) {
 
 namespace boost::serialization {
 
-/// A described struct, also as a member of a class of one's own: `archive & driver_`.
+/// A described struct, also as a member of your own class: `archive & driver_`.
 template <class Archive, cambium::Described T>
 requires(!cambium::detail::SerializesItself<T, Archive>) void serialize(Archive& archive, T& object, unsigned) {
   cambium::detail::archive_fields(archive, cambium::detail::struct_name<T>(), object);

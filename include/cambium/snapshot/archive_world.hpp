@@ -109,9 +109,9 @@ template <bool is_memory, class T, class... Around>
 }
 
 /// As `check_described` for what is either one struct or a set of them.
-template <bool is_memory, class Slot>
+template <bool is_memory, class Part>
 [[nodiscard]] constexpr bool check_slot() {
-  return check_field<is_memory, std::conditional_t<Variant<Slot>, Slot, std::variant<Slot>>>();
+  return check_field<is_memory, std::conditional_t<Variant<Part>, Part, std::variant<Part>>>();
 }
 
 /// Hash of all that traffic knows of a map, and of the options it was built with. Default options add nothing, so a
@@ -129,16 +129,17 @@ struct ArchivedRoad {
   std::vector<LaneId> route;
   std::vector<geometry::Point> way;  ///< of a free corridor, as the following
   double width = 0.0, view = 0.0;
-  map::LaneType type = map::LaneType::none;
+  std::uint8_t type = 0;  ///< a `map::LaneType`
 
   static constexpr char const* name = "road";
   static constexpr auto parameters() {
     using P = ArchivedRoad;
-    return parameter_list(parameter("route", &P::route, "lanes in order; of a free corridor none"),
-                          parameter("way", &P::way, "m", any_finite, "points of a free corridor"),
-                          parameter("width", &P::width, "m", non_negative, "of a free corridor"),
-                          parameter("view", &P::view, "m", non_negative, "likewise"),
-                          parameter("type", &P::type, "-", Range{0, 255}, "likewise"));
+    return parameter_list(
+        parameter("route", &P::route, "lanes in order; of a free corridor none"),
+        parameter("way", &P::way, "m", any_finite, "points of a free corridor"),
+        parameter("width", &P::width, "m", non_negative, "of a free corridor"),
+        parameter("view", &P::view, "m", non_negative, "likewise"),
+        parameter("type", &P::type, "-", Range{0, static_cast<double>(map::LaneType::other)}, "likewise"));
   }
 };
 
@@ -160,7 +161,7 @@ struct ArchivedAgent {
     return parameter_list(parameter("id", &P::id, "its name"),
                           parameter("road", &P::road, "-", Range{0, 4294967295.0}, "number of its road"),
                           parameter("shape", &P::shape, "its outline"),
-                          parameter("behavior", &P::behavior, "one of the world's behaviors"),
+                          parameter("behavior", &P::behavior, "one of the world's behaviours"),
                           parameter("execution", &P::execution, "how it tracks its plans"),
                           parameter("dynamics", &P::dynamics, "the vehicle model"),
                           parameter("observer", &P::observer, "how it sees the others"),
@@ -249,7 +250,7 @@ template <class World>
       throw SnapshotError("snapshot", "a free corridor of the world was not built by build_free_corridor",
                           "build it so: only then can it be built again");
     auto const options = map::free_corridor_options(*road.given);
-    parts.roads.push_back({{}, road.given->way, options.width, options.view, options.type});
+    parts.roads.push_back({{}, road.given->way, options.width, options.view, static_cast<std::uint8_t>(options.type)});
     roads.push_back(road.numbered.get());
   }
   parts.agents.reserve(roster.agents.size());
@@ -262,7 +263,7 @@ template <class World>
     auto const number = static_cast<std::uint32_t>(place - roads.begin());
     if (place == roads.end()) {
       roads.push_back(agent.road.get());
-      parts.roads.push_back({agent.road->route, {}, 0.0, 0.0, map::LaneType::none});
+      parts.roads.push_back({agent.road->route, {}, 0.0, 0.0, 0});
     }
     parts.agents.push_back({agent.id, number, agent.shape, agent.behavior, agent.execution, agent.dynamics,
                             agent.observer, roster.goals[slot]});
@@ -347,7 +348,7 @@ requires requires(Archive& archive, void* id) { archive.template get_helper<Arch
       require_consistent(index_of(lane) < map.lanes().size(), "a route has a lane that the map lacks");
     return map.queries().road_corridor(map, road.route);
   }
-  map::FreeCorridorOptions const options{road.width, road.type, road.view};
+  map::FreeCorridorOptions const options{road.width, static_cast<map::LaneType>(road.type), road.view};
   FreeRoad free;
   if (auto const* const same = find_free_road(known, road.way, options)) {
     free = *same;
@@ -418,7 +419,7 @@ template <class World>
 
 namespace boost::serialization {
 
-/// A world, also as a member of a class of one's own. When it is loaded, it must have the map already.
+/// A world, also as a member of your own class. When it is loaded, it must have the map already.
 template <class Archive, class T>
 requires(cambium::detail::is_world<T>) void serialize(Archive& archive, T& world, unsigned) {
   using namespace cambium::detail;

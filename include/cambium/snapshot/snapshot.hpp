@@ -162,7 +162,7 @@ struct ReadPart {
 }  // namespace detail
 
 /// The state of `parts` as bytes: worlds, described structs such as a planner or its memory, the workspace of an `Mcts`
-/// with the trees that `keep` has kept (include archive_workspace.hpp), and classes of one's own that
+/// with the trees that `keep` has kept (include archive_workspace.hpp), and your own classes that
 /// Boost.Serialization can save (with a member `template <class Archive> void serialize(Archive&, unsigned)`, or for
 /// `boost::archive::polymorphic_oarchive` and `polymorphic_iarchive` only). What belongs to the environment, such as a
 /// logger, such a class leaves out. A world is saved with everything but its map, which is noted by a hash, and its
@@ -176,10 +176,10 @@ template <class... Parts>
 
 /// Restores `parts` from a snapshot of parts of the same names and order. A world keeps its map, which must be the one
 /// of the snapshot; `snapshot_info` says where that is. A kept tree takes the map of its world, which must come right
-/// before the workspace. A class of one's own keeps what it does not save. Throws `SnapshotError`, before anything is
+/// before the workspace. Your own class keeps what it does not save. Throws `SnapshotError`, before anything is
 /// read, if the bytes are no snapshot, damaged, of a newer version, of another platform (binary ones), of other parts
 /// or of another map; and if the content does not fit the parts. Then worlds, workspaces and described structs are
-/// unchanged; a class of one's own may be half read. `where`: the file, for messages. O(bytes).
+/// unchanged; your own class may be half read. `where`: the file, for messages. O(bytes).
 template <class... Parts>
 void from_snapshot(std::string_view bytes, std::string const& where, Parts&... parts) {
   static_assert(sizeof...(Parts) > 0, "cambium::from_snapshot: name what to restore: worlds, planners, memories");

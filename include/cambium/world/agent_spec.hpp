@@ -94,7 +94,7 @@ struct AgentSpecOf {
         parameter("speed", &P::speed, "m/s", Range{-0.1, 1000}, "along the heading"),
         parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "as measured"),
         parameter("shape", &P::shape, "default: a car"),
-        parameter("behavior", &P::behavior, "one of the world's behaviors"),
+        parameter("behavior", &P::behavior, "one of the world's behaviours"),
         parameter("goal", &P::goal, "absent: none"),
         parameter("route", &P::route, "absent: the shortest to the goal, straight on without one"),
         parameter("way", &P::way, "m", any_finite, "instead of a route: points of a way that is no lane, as on foot"));

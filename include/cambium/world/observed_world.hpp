@@ -198,14 +198,14 @@ class ObservedWorld {
   /// Whether the agent has a goal, so that the lane in which its route ends matters.
   [[nodiscard]] bool has_goal() const { return !std::holds_alternative<NoGoal>(goal()); }
 
-  /// The present color of a traffic light; `off` if it has no phases (see `World::set_light`). O(1).
+  /// The present colour of a traffic light; `off` if it has no phases (see `World::set_light`). O(1).
   [[nodiscard]] map::LightColor light(LightId id) const {
     auto const& lights = world_->roster().lights;
     return index_of(id) < lights.size() ? lights[index_of(id)].at(time()) : map::LightColor::off;
   }
 
-  /// For how long a traffic light has been red [s]; below 0: it turns red in that time, which drivers know because a
-  /// light is yellow for as long each time. Only of a light that is on. O(1).
+  /// Time [s] since the light turned red; negative: time until it will, which drivers know because yellow always lasts
+  /// the same. Precondition: the light is on. O(1).
   [[nodiscard]] double red_for(LightId id) const {
     auto const& lights = world_->roster().lights;
     return index_of(id) < lights.size() ? lights[index_of(id)].red_for(time()) : 0.0;

@@ -9,11 +9,11 @@
 
 namespace cambium {
 
-/// The distance [m], bumper to bumper, from which on a vehicle cannot run into the one ahead: this one brakes to a
-/// standstill with `front_deceleration` at once, the other after `reaction_time` [s] with `rear_deceleration`, both
-/// positive [m/s^2]. Speeds [m/s] are not negative. (Rizaldi et al. 2017, "Formalising and Monitoring Traffic Rules for
-/// Autonomous Vehicles in Isabelle/HOL", theorem 4: the largest of the distances 1 and 2 where 2 applies. Distances 0
-/// and 3 of the theorem are bounds that suffice and are never smaller.) O(1).
+/// Smallest distance [m], bumper to bumper, at which a vehicle cannot run into the one ahead. The front one brakes at
+/// once with `front_deceleration`, the rear one after `reaction_time` [s] with `rear_deceleration`, both positive
+/// [m/s^2], each to a standstill. Speeds [m/s] are not negative. (Rizaldi et al. 2017, "Formalising and Monitoring
+/// Traffic Rules for Autonomous Vehicles in Isabelle/HOL", theorem 4: the largest of the distances 1 and 2 where 2
+/// applies. Distances 0 and 3 of the theorem are bounds that suffice and are never smaller.) O(1).
 [[nodiscard]] inline double safe_distance(double rear_speed, double front_speed, double reaction_time,
                                           double rear_deceleration, double front_deceleration) {
   double const reacting = rear_speed * reaction_time;

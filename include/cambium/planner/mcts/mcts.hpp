@@ -92,8 +92,8 @@ struct BeliefMemory {
 /// - Cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016): `most_agents` above 1.
 ///   The agents nearest to ego choose at the same time, each for its own reward plus `cooperation` times the rewards of
 ///   the others; costs likewise, of which the greatest counts (also for a limit on them). Their goals are unknown, so
-///   the reward should hold what everybody wants, such as speed and no collision. Agents with a plain intention do not
-///   choose: slow drivers on a free road, such as cyclists, agents that move across their lane, and pedestrians.
+///   the reward should hold what everybody wants, such as speed and no collision. Agents whose intention is obvious do
+///   not choose: slow drivers on a free road, such as cyclists, agents that move across their lane, and pedestrians.
 /// - Search under a chance constraint (CC-POMCP: Lee et al. 2018): `options.search.constraint.limit` below 1. It
 ///   maximises the reward among courses whose estimated probability of a collision is within the limit; if there is
 ///   none, it minimises that probability. It learns the weight of a collision (a Lagrange multiplier), so the reward
