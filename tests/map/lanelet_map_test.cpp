@@ -233,6 +233,20 @@ TEST_CASE("what is odd in lanelets is a finding, and the rest is a map") {
         0);
 }
 
+TEST_CASE("bounds that cross are left out, and a path that leaves its bounds is a finding") {
+  Lanelet const crossing{.id = 1, .left = {{0, 2}, {100, -1}}, .right = {{0, -2}, {100, 1}}},
+      touching{.id = 2, .left = {{0, 22}, {100, 20}}, .right = {{0, 18}, {100, 20}}},
+      nook{.id = 3,  // its left bound makes a long detour, its right one none
+           .left = {{0, 62}, {50, 62}, {50, 92}, {54, 92}, {54, 62}, {100, 62}},
+           .right = {{0, 58}, {100, 58}}};
+  auto const made = build_lanelet_map({crossing, touching, nook});
+  auto const text = text_of(made.diagnostics);
+  CHECK(made.lanes.size() == 2);
+  CHECK_MESSAGE(text.find("lanelet 1: its bounds cross") != std::string::npos, text);
+  CHECK_MESSAGE(text.find("lanelet 3: its path leaves its bounds") != std::string::npos, text);
+  CHECK(text.find("lanelet 2:") == std::string::npos);
+}
+
 TEST_CASE("a lanelet whose named successor lies elsewhere goes on as the one that begins where it ends") {
   auto one = straight(1, {0, 0}, {100, 0}), other = straight(2, {100, 0}, {200, 0}),
        far = straight(3, {0, 50}, {9, 50});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -12,6 +13,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/stable_sort.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/map_builder.hpp"
@@ -48,6 +50,7 @@ class LaneletMapMaker {
           parts_ = &parts;
           find_lanes();
           link();
+          for (auto const& lane : parts.lanes) report_outside(lane);
           for (std::size_t i = 0; i < lanes_.size(); ++i) {
             if (!is_valid(lanes_[i])) continue;
             put_beside(i);
@@ -94,9 +97,11 @@ class LaneletMapMaker {
       auto elevation = elevation_along(plan.line, center.heights);
       (void)builder_.add_road(std::move(plan));
       if (!elevation.empty()) builder_.road(id).elevation = std::move(elevation);
-      if (lanelet.both_directions)
-        for (auto& written : builder_.road(id).lane_sections.front().lanes)
-          if (written.id != 0) written.direction = opendrive::LaneDirection::both;
+      for (auto& written : builder_.road(id).lane_sections.front().lanes) {
+        if (written.id == 0) continue;
+        written.line = lanelet.line;
+        if (lanelet.both_directions) written.direction = opendrive::LaneDirection::both;
+      }
       of_road_.push_back(i);
     } catch (MapError const& problem) {
       network_.report(Severity::warning, i, std::string(problem.what()) + "; the lanelet was left out");
@@ -136,6 +141,28 @@ class LaneletMapMaker {
       lane.left = geometry::Line::from_points(left);
       lane.right = geometry::Line::from_points(right);
     }
+  }
+
+  /// Reports a path that leaves the room between its bounds, as where these narrow and turn at once.
+  void report_outside(Lane const& lane) {
+    constexpr double most = 0.3, spacing = 1.0;  // [m]
+    constexpr int steps = 200;
+    if (!lane.drivable() || !lane.along_road) return;
+    auto ring = lane.left.points(), right = lane.right.points();
+    ring.insert(ring.end(), right.rbegin(), right.rend());
+    double farthest = most, where = 0.0;
+    int const count = std::clamp(static_cast<int>(lane.length() / spacing), 1, steps);
+    for (int k = 0; k <= count; ++k) {
+      double const s = lane.length() * k / count;
+      Point const p = lane.path.pose(s).position();
+      if (is_within(ring, p)) continue;
+      double const away = std::min({distance_to(ring, p), distance_to(std::array{ring.front(), ring.back()}, p)});
+      if (away > farthest) std::tie(farthest, where) = std::pair(away, s);
+    }
+    if (farthest > most)
+      network_.report(Severity::warning, of_road_[index_of(lane.road)],
+                      "its path leaves its bounds by " + cambium::detail::rounded_text(std::round(farthest * 10) / 10) +
+                          " m, " + cambium::detail::rounded_text(std::round(where)) + " m from its begin");
   }
 
   void link() {

@@ -185,6 +185,40 @@ struct LaneletCenter {
   return nearest;
 }
 
+/// Whether `p` lies within the ring, which may touch or cross itself: by the crossings of a ray.
+[[nodiscard]] inline bool is_within(std::span<Point const> ring, Point const& p) {
+  bool inside = false;
+  for (std::size_t i = 0, k = ring.size() - 1; i < ring.size(); k = i++) {
+    auto const &a = ring[i], &b = ring[k];
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return inside;
+}
+
+/// Whether the bounds cross and lie on each other's sides by more than 0.1 m. Those that end aslant may face each
+/// other the wrong way round without crossing.
+[[nodiscard]] inline bool bounds_cross(Lanelet const& lanelet) {
+  constexpr double most = 0.1;  // [m] by which they may lie on each other's sides
+  FacingBounds const bounds(lanelet);
+  auto const wrong = [&](double u, double v) {
+    Point const way = bounds.middle(v) - bounds.middle(u), across = bounds.left.at(u) - bounds.right.at(u);
+    return across.y() * way.x() - across.x() * way.y() < -most * way.norm();
+  };
+  bool any = false;
+  for (std::size_t i = 0; i + 1 < bounds.shares.size(); ++i) any = any || wrong(bounds.shares[i], bounds.shares[i + 1]);
+  if (!any) return false;
+  auto const &l = lanelet.left, &r = lanelet.right;
+  for (std::size_t i = 0; i + 1 < l.size(); ++i)
+    for (std::size_t k = 0; k + 1 < r.size(); ++k) {
+      auto const side = [](Point const& a, Point const& b, Point const& p) { return geometry::turn(a, b, p); };
+      if (side(l[i], l[i + 1], r[k]) * side(l[i], l[i + 1], r[k + 1]) < 0.0 &&
+          side(r[k], r[k + 1], l[i]) * side(r[k], r[k + 1], l[i + 1]) < 0.0)
+        return true;
+    }
+  return false;
+}
+
 /// From which point of a lanelet's middle to which its left (else its right) bound runs along `line`.
 [[nodiscard]] inline std::vector<std::pair<std::size_t, std::size_t>> places_beside(LaneletCenter const& center,
                                                                                     bool on_left,

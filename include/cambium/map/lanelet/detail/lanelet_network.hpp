@@ -115,6 +115,10 @@ class LaneletNetwork {
         report(Severity::warning, lanelet, std::string(fault) + "; the lanelet was left out");
         continue;
       }
+      if (bounds_cross(lanelet)) {
+        report(Severity::warning, lanelet, "its bounds cross each other; the lanelet was left out");
+        continue;
+      }
       if (swapped) report(Severity::warning, lanelet, "its left bound lies to the right; the bounds were exchanged");
       if (!places_.emplace(lanelet.id, lanelets.size()).second) {
         report(Severity::warning, lanelet, "its id is taken already; the lanelet was left out");
