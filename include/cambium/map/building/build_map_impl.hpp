@@ -26,7 +26,7 @@ CAMBIUM_COLD std::shared_ptr<Map const> build_linked_map(OpenDriveDocument const
   detail::MapBuild build(document, options, std::move(file), diagnostics, true);
   build.add_lanes();
   link(build.parts());
-  detail::merge_into_neighbors(build.parts());
+  detail::merge_into_neighbors(build.parts(), build.lane_findings());
   detail::set_speed_limits(document, build.parts().lanes);
   return build.finish([](Lane const& lane, double s) { return lane.path.pose(s); });
 }
