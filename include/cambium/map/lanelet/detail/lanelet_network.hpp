@@ -151,6 +151,13 @@ class LaneletNetwork {
     return std::max((end.first - begin.first).norm(), (end.second - begin.second).norm());
   }
 
+  /// The height where a way begins or ends [m]; 0 where none is known.
+  [[nodiscard]] double height(Way way, bool at_end) const {
+    auto const& heights = centers[way.lanelet].heights;
+    if (heights.empty()) return 0.0;
+    return at_end == way.backwards ? heights.front() : heights.back();
+  }
+
   void find_links() {
     for (std::size_t i = 0; i < lanelets.size(); ++i) {
       for (auto const id : lanelets[i].successors) add_link(i, id, find(id), i, "successor");
@@ -202,6 +209,7 @@ class LaneletNetwork {
       auto to = std::partition_point(ways.begin(), ways.end(), [&](Way way) { return place(way) < x - rounding; });
       for (; to != ways.end() && place(*to) <= x + rounding; ++to) {
         if (from.lanelet == to->lanelet || !(apart(from, *to) <= rounding)) continue;
+        if (std::abs(height(from, true) - height(*to, false)) > clear_height) continue;  // on different decks
         Link const link{from, *to};
         bool const fits = is_drivable(lanelets[from.lanelet].type) == is_drivable(lanelets[to->lanelet].type);
         if (!fits || std::binary_search(named.begin(), named.end(), link)) continue;
