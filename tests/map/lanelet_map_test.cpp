@@ -442,3 +442,53 @@ TEST_CASE("a malformed Lanelet2 file is an error with its line, or a map with fi
   CHECK(lost.lanes.size() == 2);
   CHECK(text_of(lost.diagnostics).find("way 77 is not there") != std::string::npos);
 }
+
+TEST_CASE("what a Lanelet2 file says twice, wrongly or in vain is a finding") {
+  struct Case {
+    std::string what, by, finding;
+  };
+  std::string const limit = "v='50 km/h'/>", end = "</osm>";
+  for (Case const& c : {
+           Case{end, "<node id='1' lat='0' lon='0'/></osm>", "node 1 is there already"},
+           Case{end, "<way id='10'/></osm>", "way 10 is there already"},
+           Case{end,
+                "<relation id='30'><tag k='type' v='regulatory_element'/><tag k='subtype' v='right_of_way'/>"
+                "</relation></osm>",
+                "rule 30 is there already"},
+           Case{end, "<relation id='5'><tag k='type' v='regulatory_element'/></relation></osm>",
+                "rules without a subtype are not read: 1"},
+           Case{"type='way' role='right' ref='14'", "type='node' role='right' ref='14'", "is a node, not a way"},
+           Case{limit, limit + "<tag k='one_way' v='maybe'/>", "one_way=maybe is neither yes nor no"},
+           Case{limit, limit + "<tag k='no_drivable_lane' v='yes'/>", "no_drivable_lane=yes is not read"},
+           Case{limit, limit + "<tag k='speed_limit:vehicle:bus' v='30'/>", "speed_limit:vehicle:bus=30 is not read"},
+           Case{"v='dashed'/>", "v='dashed'/><tag k='lane_change' v='YES'/>", "lane_change=YES is neither"},
+           Case{"ref='30'/>", "ref='30'/><member type='relation' role='regulatory_element' ref='504'/>",
+                "lanelet 21 names the rule 504, which is not there"},
+           Case{"role='yield' ref='21'", "role='yield' ref='9999'", "lanelet 9999 in the role yield is not there"},
+           Case{"role='ref_line' ref='15'", "role='ref_line' ref='88'", "way 88 in the role ref_line is not there"},
+       }) {
+    CAPTURE(c.finding);
+    auto text = lanelet2_text();
+    text.replace(text.find(c.what), c.what.size(), c.by);
+    auto const made = lanelet2_map(text);
+    CHECK_MESSAGE(text_of(made.diagnostics).find(c.finding) != std::string::npos, text_of(made.diagnostics));
+  }
+}
+
+TEST_CASE("a bicycle lane beside a lane does not take the place of the lane's neighbour") {
+  auto text = lanelet2_text();
+  text.insert(text.find("<relation id='20'>"),
+              "<relation id='19'><member type='way' role='left' ref='11'/><member type='way' role='right' ref='12'/>"
+              "<tag k='type' v='lanelet'/><tag k='subtype' v='bicycle_lane'/></relation>");
+  auto const made = lanelet2_map(text);
+  CHECK(lane_of(made, 20).right_neighbor == made.lanes.at(21));
+}
+
+TEST_CASE("lanelets that meet at different heights are not joined") {
+  for (double const height : {0.0, 6.0}) {
+    auto low = straight(1, {0, 0}, {50, 0}), high = straight(2, {50, 0}, {100, 0});
+    for (auto* lanelet : {&low, &high})
+      lanelet->left_heights = lanelet->right_heights = std::vector(3, lanelet == &high ? height : 0.0);
+    CHECK(lane_of(build_lanelet_map({low, high}), 1).successors.empty() == (height > 0.0));
+  }
+}

@@ -135,6 +135,8 @@ class OsmWays {
     for_each_child(root, "node", [&](pugi::xml_node node) {
       auto const id = osm_id(context_, node);
       if (!id) return;
+      if (degrees.contains(*id))
+        return warn(node, "node " + std::to_string(*id) + " is there already; the second one was left out");
       auto const x = parse_number<double>(osm_tag(node, "local_x")), y = parse_number<double>(osm_tag(node, "local_y"));
       if (x && y) local.emplace(*id, Point{*x, *y});
       if (auto const height = parse_number<double>(osm_tag(node, "ele"))) heights_.emplace(*id, *height);
@@ -185,6 +187,10 @@ class OsmWays {
     auto const id = osm_id(context_, node);
     if (!id) return;
     OsmWay way{{}, std::string(osm_tag(node, "type")), std::string(osm_tag(node, "subtype"))};
+    for (char const* key : {"lane_change", "lane_change:left", "lane_change:right"})
+      if (auto const word = osm_tag(node, key); !word.empty() && !osm_truth(word))
+        warn(node, "way " + std::to_string(*id) + ": " + key + "=" + std::string(word) +
+                       " is neither yes nor no; it was left out");
     way.change = osm_truth(osm_tag(node, "lane_change"));
     way.change_left = osm_truth(osm_tag(node, "lane_change:left"));
     way.change_right = osm_truth(osm_tag(node, "lane_change:right"));
@@ -199,7 +205,8 @@ class OsmWays {
         warn(child, "way " + std::to_string(*id) + " names node " + std::to_string(*ref) +
                         ", which is not there; it was left out");
     });
-    ways_.emplace(*id, std::move(way));
+    if (!ways_.emplace(*id, std::move(way)).second)
+      warn(node, "way " + std::to_string(*id) + " is there already; the second one was left out");
   }
 
   XmlContext& context_;
