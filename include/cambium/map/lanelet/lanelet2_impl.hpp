@@ -261,13 +261,42 @@ class Lanelet2Reader {
     return found;
   }
 
-  /// How far before the lanelet's end the stop line of the element lies [m]: the one of `lines` next to its end.
+  /// How far before the lanelet's end the stop line of the element lies [m]: the one of `lines` next to its end. The
+  /// whole length for a line behind its begin, as Autoware has for the lights of ways through junctions.
   [[nodiscard]] static double before_end(Lanelet const& lanelet, std::vector<Point> const& lines) {
-    if (lines.empty() || lanelet.left.empty() || lanelet.right.empty()) return 0.0;
-    Point const end = 0.5 * (lanelet.left.back() + lanelet.right.back());
-    return distance_before_end(
-        lanelet, *std::min_element(lines.begin(), lines.end(),
-                                   [&](auto const& a, auto const& b) { return (a - end).norm() < (b - end).norm(); }));
+    if (lines.empty() || fault_of_bound(lanelet.left) != nullptr || fault_of_bound(lanelet.right) != nullptr)
+      return 0.0;
+    FacingBounds const bounds(lanelet);
+    Point const begin = bounds.middle(0.0), end = bounds.middle(1.0);
+    Point const line = *std::min_element(
+        lines.begin(), lines.end(), [&](auto const& a, auto const& b) { return (a - end).norm() < (b - end).norm(); });
+    Point const way = bounds.middle(std::min(1.0, 1.0 / bounds.length())) - begin;  // over the first metre
+    constexpr double farthest = 50.0;                                               // [m], else it is of another one
+    if ((line - begin).dot(way) < 0.0 && (line - begin).norm() < std::min(farthest, (line - end).norm()))
+      return bounds.length();
+    return distance_before_end(lanelet, line);
+  }
+
+  /// The ways through the junction that a lanelet leads to: itself, where it lies inside.
+  [[nodiscard]] std::vector<std::size_t> through_junction(std::vector<std::size_t> const& given) const {
+    std::vector<std::size_t> ways;
+    for (auto const i : given) {
+      if (lanelets_[i].lanelet.in_junction)
+        ways.push_back(i);
+      else
+        for (auto const next : lanelets_[i].lanelet.successors)
+          if (auto const k = places_.at(next); lanelets_[k].lanelet.in_junction) ways.push_back(k);
+    }
+    return ways;
+  }
+
+  /// The lanelets at whose end a sign for lanelet `i` stands: those before the junction, where it lies inside.
+  [[nodiscard]] std::vector<std::size_t> sign_places(std::size_t i) const {
+    std::vector<std::size_t> approaches;
+    if (lanelets_[i].lanelet.in_junction)
+      for (auto const before : lanelets_[i].lanelet.predecessors)
+        if (auto const k = places_.at(before); !lanelets_[k].lanelet.in_junction) approaches.push_back(k);
+    return approaches.empty() ? std::vector{i} : approaches;
   }
 
   void read_rule(pugi::xml_node node) {
@@ -290,18 +319,24 @@ class Lanelet2Reader {
       return warn(node, "no lanelet refers to the rule " + std::to_string(*id) + "; it was left out");
     auto const lines = stop_lines(node);
     auto const give = [&](std::vector<std::size_t> const& to, SignalKind kind, std::string const& light = {}) {
-      for (auto const i : to) {
-        LaneletSignal const signal{kind, before_end(lanelets_[i].lanelet, lines), light};
-        auto& signals = lanelets_[i].lanelet.signals;
-        if (std::find(signals.begin(), signals.end(), signal) == signals.end()) signals.push_back(signal);
-      }
+      for (auto const i : to)
+        for (auto const k : kind == SignalKind::light ? std::vector{i} : sign_places(i)) {
+          LaneletSignal const signal{kind, before_end(lanelets_[k].lanelet, lines), light};
+          auto& signals = lanelets_[k].lanelet.signals;
+          if (std::find(signals.begin(), signals.end(), signal) == signals.end()) signals.push_back(signal);
+        }
     };
     if (subtype == "right_of_way") {
       auto const first = named(node, "right_of_way"), yielding = named(node, "yield");
       auto const is_inside = [&](std::size_t i) { return lanelets_[i].lanelet.in_junction; };
-      if (!first.empty() && std::all_of(first.begin(), first.end(), is_inside)) {
-        for (auto const i : first)
-          for (auto const k : yielding) go_before_.emplace(i, k);
+      bool const first_inside = !first.empty() && std::all_of(first.begin(), first.end(), is_inside);
+      if (yielding.empty() && (first.empty() || first_inside))
+        return warn(node, "nobody yields by it; it was left out");
+      auto const ways = through_junction(first), waiting = through_junction(yielding);
+      bool const any_inside = first_inside || std::any_of(yielding.begin(), yielding.end(), is_inside);
+      if (any_inside && !ways.empty() && !waiting.empty()) {
+        for (auto const i : ways)
+          for (auto const k : waiting) go_before_.emplace(i, k);
       } else {
         give(first, SignalKind::priority);
         give(yielding, SignalKind::give_way);
