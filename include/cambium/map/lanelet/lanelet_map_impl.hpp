@@ -14,6 +14,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/core/text.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/map_builder.hpp"
@@ -112,13 +113,22 @@ class LaneletMapMaker {
   void add_priorities() {
     std::map<std::int64_t, std::size_t> places;
     for (std::size_t i = 0; i < network_.lanelets.size(); ++i) places.emplace(network_.lanelets[i].id, i);
-    for (auto& junction : builder_.document().junctions)
-      for (auto const& [number, id] : junctions_)
-        for (std::size_t i = 0; id == junction.id && i < network_.lanelets.size(); ++i)
-          for (auto const other : network_.lanelets[i].goes_before)
-            if (auto const at = places.find(other);
-                network_.junction_of[i] == number && at != places.end() && network_.junction_of[at->second] == number)
-              junction.priorities.push_back({std::to_string(network_.lanelets[i].id), std::to_string(other)});
+    auto& made = builder_.document().junctions;
+    std::map<std::string, std::size_t> numbers;
+    for (std::size_t k = 0; k < made.size(); ++k) numbers.emplace(made[k].id, k);
+    for (std::size_t i = 0; i < network_.lanelets.size(); ++i)
+      for (auto const other : network_.lanelets[i].goes_before) {
+        auto const at = places.find(other);
+        auto const junction = network_.junction_of[i];
+        auto const id = junctions_.find(junction);
+        if (at == places.end() || id == junctions_.end() || network_.junction_of[at->second] != junction)
+          network_.report(Severity::info, i,
+                          "it goes before lanelet " + std::to_string(other) +
+                              ", with which it shares no junction; that says nothing");
+        else
+          made[numbers.at(id->second)].priorities.push_back(
+              {std::to_string(network_.lanelets[i].id), std::to_string(other)});
+      }
   }
 
   [[nodiscard]] Lane& lane_of(LaneletNetwork::Way way) {
@@ -165,12 +175,25 @@ class LaneletMapMaker {
                           " m, " + cambium::detail::rounded_text(std::round(where)) + " m from its begin");
   }
 
+  void report_kink(std::size_t i, Lane const& lane, Lane const& next) {
+    constexpr double most = 0.5;  // [rad]
+    double const kink =
+        std::abs(geometry::angle_difference(next.path.begin_pose().heading, lane.path.end_pose().heading));
+    if (kink > most)
+      network_.report(Severity::warning, i,
+                      "lanelet " + std::to_string(network_.lanelets[of_road_[index_of(next.road)]].id) + " continues " +
+                          cambium::detail::rounded_text(std::round(kink * 100) / 100) +
+                          " rad off its direction; the link was kept");
+  }
+
   void link() {
     for (auto const& [from, to] : network_.links)
       if (is_valid(lanes_[from.lanelet]) && is_valid(lanes_[to.lanelet])) {
         auto &before = lane_of(from), &behind = lane_of(to);
         before.successors.push_back(behind.id);
         behind.predecessors.push_back(before.id);
+        if (!from.backwards && !to.backwards && before.drivable() && !network_.inferred.contains({from, to}))
+          report_kink(from.lanelet, before, behind);
       }
     for (auto& lane : parts_->lanes) {
       std::sort(lane.successors.begin(), lane.successors.end());

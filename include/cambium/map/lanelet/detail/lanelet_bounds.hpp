@@ -118,8 +118,7 @@ struct LaneletCenter {
 };
 
 /// The height at share `u` of a bound's length; `heights` are those of its points.
-[[nodiscard]] inline double height_at(std::span<Point const> bound, std::span<double const> heights, double u) {
-  Rail const rail(bound);
+[[nodiscard]] inline double height_at(Rail const& rail, std::span<double const> heights, double u) {
   double const place = u * rail.length();
   auto const next = std::upper_bound(rail.s.begin() + 1, rail.s.end() - 1, place) - rail.s.begin();
   auto const i = static_cast<std::size_t>(next);
@@ -133,6 +132,7 @@ struct LaneletCenter {
 [[nodiscard]] inline LaneletCenter center_of(Lanelet const& lanelet) {
   constexpr double shortest = 0.25;  // [m] of a straight piece
   FacingBounds const bounds(lanelet);
+  Rail const left_rail(lanelet.left), right_rail(lanelet.right);
   std::vector<double> corners;
   auto const middle = [&](double u) { return bounds.middle(u); };
   for (double const u : bounds.shares)
@@ -151,8 +151,8 @@ struct LaneletCenter {
       double const half = 0.5 * std::max(0.0, across.y() * way.x() - across.x() * way.y());
       center.widths.push_back({half, half});
       if (!lanelet.left_heights.empty())
-        center.heights.push_back(0.5 * (height_at(lanelet.left, lanelet.left_heights, u) +
-                                        height_at(lanelet.right, lanelet.right_heights, u)));
+        center.heights.push_back(
+            0.5 * (height_at(left_rail, lanelet.left_heights, u) + height_at(right_rail, lanelet.right_heights, u)));
     };
     if (i == 0) add(0.0, begin);
     center.corners.push_back(i == 0 ? 0.75 * begin + 0.25 * end : begin);

@@ -9,6 +9,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,7 @@ class LaneletNetwork {
   std::vector<Lanelet> lanelets;
   std::vector<LaneletCenter> centers;    ///< of each lanelet
   std::vector<Link> links;               ///< sorted
+  std::set<Link> inferred;               ///< links that no lanelet names: each is a finding already
   std::vector<std::size_t> right_of;     ///< the neighbour of each lanelet; `nobody` without one
   std::vector<std::size_t> junction_of;  ///< lanelets of one number lie in one junction; `nobody`: in none
   /// Direction of each lanelet's path at its begin and end where it meets others [rad].
@@ -215,6 +217,7 @@ class LaneletNetwork {
         if (!fits || std::binary_search(named.begin(), named.end(), link)) continue;
         links.push_back(link);
         if (from.backwards || to->backwards) continue;
+        inferred.insert(link);
         report(Severity::warning, from.lanelet,
                "lanelet " + std::to_string(lanelets[to->lanelet].id) +
                    " begins where it ends, and neither names the other; the two were joined");
