@@ -559,12 +559,12 @@ std::string member(std::string const& role, int id) {
 }  // namespace
 
 TEST_CASE("right of way between approaches and ways inside a junction holds for the ways inside") {
-  for (auto const& [first, second] : {std::pair(2, 12), {2, 11}, {1, 12}}) {
-    CAPTURE(first);
-    CAPTURE(second);
+  for (auto const& pair : {std::pair(2, 12), {2, 11}, {1, 12}}) {
+    CAPTURE(pair.first);
+    CAPTURE(pair.second);
     Osm osm;
     osm.crossing();
-    osm.rule(30, "right_of_way", member("right_of_way", first) + member("yield", second));
+    osm.rule(30, "right_of_way", member("right_of_way", pair.first) + member("yield", pair.second));
     auto const made = osm.map();
     REQUIRE(made.map->junctions().size() == 1);
     auto const& priorities = made.map->junctions()[0].priorities;
