@@ -23,10 +23,10 @@ CAMBIUM_COLD std::shared_ptr<Map const> build_linked_map(OpenDriveDocument const
                                                          std::string file, std::vector<Diagnostic>& diagnostics,
                                                          std::function<void(Map::Parts&)> const& link) {
   detail::RequireBuildable::check(document);
-  detail::MapBuild build(document, options, std::move(file), diagnostics);
+  detail::MapBuild build(document, options, std::move(file), diagnostics, true);
   build.add_lanes();
   link(build.parts());
-  detail::merge_into_neighbors(build.parts());
+  detail::merge_into_neighbors(build.parts(), build.lane_findings());
   detail::set_speed_limits(document, build.parts().lanes);
   return build.finish([](Lane const& lane, double s) { return lane.path.pose(s); });
 }

@@ -34,12 +34,13 @@ class Lanelet2Reader {
     for_each_child(root, "relation", [&](pugi::xml_node node) {
       if (osm_tag(node, "type") == "lanelet") read_lanelet(node);
     });
+    link();
     for_each_child(root, "relation", [&](pugi::xml_node node) {
       if (osm_tag(node, "type") == "regulatory_element") read_rule(node);
     });
+    report_missing_rules();
     set_priorities();
     report_unread();
-    link();
     if (lanelets_.empty())
       throw MapError(context_.file(), "it has no usable lanelet",
                      "give a Lanelet2 map: relations with the tag type=lanelet and members left and right");
@@ -62,11 +63,15 @@ class Lanelet2Reader {
     std::vector<Id> rules;         ///< regulatory elements that it names
   };
 
-  /// Calls `visit(member, ref)` for each member of a relation in `role`.
+  /// Calls `visit(member, ref)` for each member of a relation in `role` that is a `kind`: a way or a relation. Others
+  /// have ids of their own, and are reported.
   template <class Visit>
-  void for_each_member(pugi::xml_node node, std::string_view role, Visit const& visit) {
+  void for_each_member(pugi::xml_node node, std::string_view role, std::string_view kind, Visit const& visit) {
     for_each_child(node, "member", [&](pugi::xml_node member) {
       if (member.attribute("role").value() != role) return;
+      if (std::string_view const type = member.attribute("type").value(); type != kind && !type.empty())
+        return warn(member, "the member in the role " + std::string(role) + " is a " + std::string(type) + ", not a " +
+                                std::string(kind) + "; it was left out");
       if (auto const ref = context_.number<Id>(member, "ref")) visit(member, *ref);
     });
   }
@@ -74,7 +79,7 @@ class Lanelet2Reader {
   /// The way that a relation has in `role`: the first; further ones are reported.
   [[nodiscard]] std::optional<Id> bound_way(pugi::xml_node node, std::string_view role) {
     std::optional<Id> found;
-    for_each_member(node, role, [&](pugi::xml_node member, Id ref) {
+    for_each_member(node, role, "way", [&](pugi::xml_node member, Id ref) {
       if (found) return warn(member, "there is a second way in the role " + std::string(role) + "; it was left out");
       auto const* const way = ways_.find(ref);
       if (way == nullptr || way->nodes.size() < 2)
@@ -159,13 +164,14 @@ class Lanelet2Reader {
     if (!type)
       return context_.report(Severity::info, node,
                              "lanelet " + std::to_string(*id) + " of the subtype " + std::string(word) +
-                                 " is for nobody who drives, cycles or walks; it was left out");
+                                 " is not for cars, buses, bicycles or pedestrians; it was left out");
     auto const left = bound_way(node, "left"), right = bound_way(node, "right");
     if (!left || !right) return warn(node, "lanelet " + std::to_string(*id) + " lacks a bound; it was left out");
     Read read;
     read.lanelet.id = *id;
     read.lanelet.line = context_.line(node);
     read.lanelet.type = *type;
+    report_tags(node, *type);
     auto const one_way = osm_truth(osm_tag(node, "one_way:vehicle"));
     read.lanelet.both_directions =
         is_drivable(*type) && !one_way.value_or(osm_truth(osm_tag(node, "one_way")).value_or(true));
@@ -178,10 +184,42 @@ class Lanelet2Reader {
     if (!read.lanelet.speed_limit && is_drivable(*type))
       read.lanelet.speed_limit = (osm_tag(node, "location") == "nonurban" ? usual->rural : usual->urban) / 3.6;
     set_bounds(read, *left, *right);
-    for_each_member(node, "regulatory_element", [&](pugi::xml_node, Id ref) { read.rules.push_back(ref); });
+    for_each_member(node, "regulatory_element", "relation", [&](pugi::xml_node, Id ref) { read.rules.push_back(ref); });
     if (!places_.emplace(*id, lanelets_.size()).second)
       return warn(node, "lanelet " + std::to_string(*id) + " is there already; the second one was left out");
+    for (auto const rule : read.rules) {
+      auto& users = users_[rule].lanelets;
+      if (users.empty() || users.back() != lanelets_.size()) users.push_back(lanelets_.size());
+    }
     lanelets_.push_back(std::move(read));
+  }
+
+  void report_missing_rules() {
+    for (auto const& [id, users] : users_)
+      for (auto const i : users.lanelets)
+        if (auto const& lanelet = lanelets_[i].lanelet; !users.rule_seen)
+          context_.report(Severity::warning, lanelet.line, "relation",
+                          "lanelet " + std::to_string(lanelet.id) + " names the rule " + std::to_string(id) +
+                              ", which is not there");
+  }
+
+  /// Tags of a lanelet that have no effect, or not the written one.
+  void report_tags(pugi::xml_node node, LaneType type) {
+    for (auto child = node.first_child(); child; child = child.next_sibling()) {
+      if (local_name(child) != "tag") continue;
+      std::string_view const key = child.attribute("k").value(), value = child.attribute("v").value();
+      auto const said = std::string(key) + "=" + std::string(value);
+      auto const truth = osm_truth(value);
+      bool const is_one_way = key == "one_way" || key == "one_way:vehicle";
+      if ((is_one_way || key.starts_with("participant:")) && !truth)
+        warn(child, said + " is neither yes nor no; it was left out");
+      else if (is_one_way && truth == false && type == LaneType::biking)
+        context_.report(Severity::info, child, said + ": bicycle lanes are used one way only, as their bounds run");
+      else if (key == "no_drivable_lane" && truth != false && is_drivable(type))
+        warn(child, said + " is not read: its subtype and participants say that it is driven on");
+      else if (key.starts_with("speed_limit:"))
+        warn(child, said + " is not read: limits hold for everyone");
+    }
   }
 
   /// Ways may be written either way round: the bounds are turned so that they run alike, left on the left.
@@ -213,29 +251,66 @@ class Lanelet2Reader {
   /// The lanelets that a regulatory element names in `role`.
   [[nodiscard]] std::vector<std::size_t> named(pugi::xml_node node, std::string_view role) {
     std::vector<std::size_t> found;
-    for_each_member(node, role, [&](pugi::xml_node, Id ref) {
-      if (auto const place = places_.find(ref); place != places_.end()) found.push_back(place->second);
+    for_each_member(node, role, "relation", [&](pugi::xml_node member, Id ref) {
+      if (auto const place = places_.find(ref); place != places_.end())
+        found.push_back(place->second);
+      else
+        warn(member,
+             "lanelet " + std::to_string(ref) + " in the role " + std::string(role) + " is not there, or was left out");
     });
     return found;
   }
 
-  /// How far before the lanelet's end the stop line of the element lies [m]: the one of `lines` next to its end.
+  /// How far before the lanelet's end the stop line of the element lies [m]: the one of `lines` next to its end. The
+  /// whole length for a line behind its begin, as Autoware has for the lights of ways through junctions.
   [[nodiscard]] static double before_end(Lanelet const& lanelet, std::vector<Point> const& lines) {
-    if (lines.empty() || lanelet.left.empty() || lanelet.right.empty()) return 0.0;
-    Point const end = 0.5 * (lanelet.left.back() + lanelet.right.back());
-    return distance_before_end(
-        lanelet, *std::min_element(lines.begin(), lines.end(),
-                                   [&](auto const& a, auto const& b) { return (a - end).norm() < (b - end).norm(); }));
+    if (lines.empty() || fault_of_bound(lanelet.left) != nullptr || fault_of_bound(lanelet.right) != nullptr)
+      return 0.0;
+    FacingBounds const bounds(lanelet);
+    Point const begin = bounds.middle(0.0), end = bounds.middle(1.0);
+    Point const line = *std::min_element(
+        lines.begin(), lines.end(), [&](auto const& a, auto const& b) { return (a - end).norm() < (b - end).norm(); });
+    Point const way = bounds.middle(std::min(1.0, 1.0 / bounds.length())) - begin;  // over the first metre
+    constexpr double farthest = 50.0;                                               // [m], else it is of another one
+    if ((line - begin).dot(way) < 0.0 && (line - begin).norm() < std::min(farthest, (line - end).norm()))
+      return bounds.length();
+    return distance_before_end(lanelet, line);
+  }
+
+  /// The ways through the junction that a lanelet leads to: itself, where it lies inside.
+  [[nodiscard]] std::vector<std::size_t> through_junction(std::vector<std::size_t> const& given) const {
+    std::vector<std::size_t> ways;
+    for (auto const i : given) {
+      if (lanelets_[i].lanelet.in_junction)
+        ways.push_back(i);
+      else
+        for (auto const next : lanelets_[i].lanelet.successors)
+          if (auto const k = places_.at(next); lanelets_[k].lanelet.in_junction) ways.push_back(k);
+    }
+    return ways;
+  }
+
+  /// The lanelets at whose end a sign for lanelet `i` stands: those before the junction, where it lies inside.
+  [[nodiscard]] std::vector<std::size_t> sign_places(std::size_t i) const {
+    std::vector<std::size_t> approaches;
+    if (lanelets_[i].lanelet.in_junction)
+      for (auto const before : lanelets_[i].lanelet.predecessors)
+        if (auto const k = places_.at(before); !lanelets_[k].lanelet.in_junction) approaches.push_back(k);
+    return approaches.empty() ? std::vector{i} : approaches;
   }
 
   void read_rule(pugi::xml_node node) {
     auto const id = osm_id(context_, node);
     if (!id) return;
     auto const subtype = osm_tag(node, "subtype");
-    std::vector<std::size_t> subject;
-    for (std::size_t i = 0; i < lanelets_.size(); ++i)
-      if (std::find(lanelets_[i].rules.begin(), lanelets_[i].rules.end(), *id) != lanelets_[i].rules.end())
-        subject.push_back(i);
+    auto const users = users_.try_emplace(*id).first;
+    if (users->second.rule_seen)
+      return warn(node, "rule " + std::to_string(*id) + " is there already; the second one was left out");
+    users->second.rule_seen = true;
+    auto const& subject = users->second.lanelets;
+    for_each_member(node, "cancels", "way", [&](pugi::xml_node member, Id) {
+      context_.report(Severity::info, member, "the role cancels is not read: signs hold for their lanelets");
+    });
     bool const is_read = subtype == "right_of_way" || subtype == "all_way_stop" || subtype == "traffic_light" ||
                          subtype == "speed_limit" || subtype == "traffic_sign";
     if (!is_read)
@@ -245,14 +320,23 @@ class Lanelet2Reader {
     auto const lines = stop_lines(node);
     auto const give = [&](std::vector<std::size_t> const& to, SignalKind kind, std::string const& light = {}) {
       for (auto const i : to)
-        lanelets_[i].lanelet.signals.push_back({kind, before_end(lanelets_[i].lanelet, lines), light});
+        for (auto const k : kind == SignalKind::light ? std::vector{i} : sign_places(i)) {
+          LaneletSignal const signal{kind, before_end(lanelets_[k].lanelet, lines), light};
+          auto& signals = lanelets_[k].lanelet.signals;
+          if (std::find(signals.begin(), signals.end(), signal) == signals.end()) signals.push_back(signal);
+        }
     };
     if (subtype == "right_of_way") {
       auto const first = named(node, "right_of_way"), yielding = named(node, "yield");
       auto const is_inside = [&](std::size_t i) { return lanelets_[i].lanelet.in_junction; };
-      if (!first.empty() && std::all_of(first.begin(), first.end(), is_inside)) {
-        for (auto const i : first)
-          for (auto const k : yielding) go_before_.emplace(i, k);
+      bool const first_inside = !first.empty() && std::all_of(first.begin(), first.end(), is_inside);
+      if (yielding.empty() && (first.empty() || first_inside))
+        return warn(node, "nobody yields by it; it was left out");
+      auto const ways = through_junction(first), waiting = through_junction(yielding);
+      bool const any_inside = first_inside || std::any_of(yielding.begin(), yielding.end(), is_inside);
+      if (any_inside && !ways.empty() && !waiting.empty()) {
+        for (auto const i : ways)
+          for (auto const k : waiting) go_before_.emplace(i, k);
       } else {
         give(first, SignalKind::priority);
         give(yielding, SignalKind::give_way);
@@ -276,7 +360,10 @@ class Lanelet2Reader {
   /// The name of the light: elements with the same heads are one.
   [[nodiscard]] std::string light_of(pugi::xml_node node, Id id) {
     std::vector<Id> heads;
-    for_each_member(node, "refers", [&](pugi::xml_node, Id ref) { heads.push_back(ref); });
+    for_each_member(node, "refers", "way", [&](pugi::xml_node member, Id ref) {
+      heads.push_back(ref);
+      if (ways_.find(ref) == nullptr) warn(member, "way " + std::to_string(ref) + " in the role refers is not there");
+    });
     std::sort(heads.begin(), heads.end());
     if (heads.empty()) return std::to_string(id);
     return lights_.try_emplace(std::move(heads), std::to_string(id)).first->second;
@@ -291,28 +378,37 @@ class Lanelet2Reader {
       return std::any_of(signals.begin(), signals.end(),
                          [](LaneletSignal const& signal) { return signal.kind == SignalKind::light; });
     };
+    auto const is_lit = [&](std::size_t i) {  // by its own light, or one on the way to it
+      auto const& before = lanelets_[i].lanelet.predecessors;
+      return has_light(i) ||
+             std::any_of(before.begin(), before.end(), [&](Id id) { return has_light(places_.at(id)); });
+    };
     for (auto const& [first, second] : go_before_)
       if (go_before_.contains({second, first}))
         both_ways += first < second ? 1 : 0;
-      else if (!has_light(first) || !has_light(second))
+      else if (!is_lit(first) || !is_lit(second))
         lanelets_[first].lanelet.goes_before.push_back(lanelets_[second].lanelet.id);
     if (both_ways > 0)
-      context_.report(Severity::warning, 0, "relation",
-                      std::to_string(both_ways) +
-                          " pairs of lanelets go before each other by its right_of_way rules; these say nothing");
+      context_.report(
+          Severity::warning, 0, "relation",
+          std::to_string(both_ways) + " pairs of lanelets each have priority over the other; both rules were ignored");
   }
 
   void report_unread() {
     for (auto const& [subtype, unread] : unread_)
       context_.report(Severity::info, unread.node,
-                      "rules of the subtype " + subtype + " are not read: " + std::to_string(unread.count));
+                      (subtype.empty() ? "rules without a subtype" : "rules of the subtype " + subtype) +
+                          " are not read: " + std::to_string(unread.count));
   }
 
   /// The places of an element's stop lines: the middles of the ways in the role ref_line.
   [[nodiscard]] std::vector<Point> stop_lines(pugi::xml_node node) {
     std::vector<Point> lines;
-    for_each_member(node, "ref_line", [&](pugi::xml_node, Id ref) {
-      if (auto const middle = ways_.middle_of_ends(ref)) lines.push_back(*middle);
+    for_each_member(node, "ref_line", "way", [&](pugi::xml_node member, Id ref) {
+      if (auto const middle = ways_.middle_of_ends(ref))
+        lines.push_back(*middle);
+      else
+        warn(member, "way " + std::to_string(ref) + " in the role ref_line is not there, or has no nodes");
     });
     return lines;
   }
@@ -320,8 +416,11 @@ class Lanelet2Reader {
   /// Calls `visit(code)` for each sign of an element: its subtype, a country and a number of its catalogue, as de205.
   template <class Visit>
   void for_each_sign(pugi::xml_node node, Visit const& visit) {
-    for_each_member(node, "refers", [&](pugi::xml_node, Id ref) {
-      if (auto const* const way = ways_.find(ref)) visit(std::string_view(way->subtype));
+    for_each_member(node, "refers", "way", [&](pugi::xml_node member, Id ref) {
+      if (auto const* const way = ways_.find(ref))
+        visit(std::string_view(way->subtype));
+      else
+        warn(member, "way " + std::to_string(ref) + " in the role refers is not there");
     });
   }
 
@@ -329,6 +428,9 @@ class Lanelet2Reader {
     std::optional<SignalKind> kind;
     for_each_sign(node, [&](std::string_view code) {
       auto const* const known = find_signal_code(code.substr(0, 2), code.size() > 2 ? code.substr(2) : code, "");
+      if (known == nullptr && code.starts_with("de274"))
+        return warn(node, "its sign " + std::string(code) +
+                              " is a speed, which only an element of the subtype speed_limit sets; it was left out");
       if (known == nullptr) return warn(node, "its sign " + std::string(code) + " is not known; it was left out");
       if (auto const found = kind_of(known->meaning); found && found != SignalKind::light) kind = found;
     });
@@ -349,10 +451,10 @@ class Lanelet2Reader {
   /// Who follows whom, and who lies beside whom.
   void link() {
     std::multimap<std::pair<Id, Id>, std::size_t> begins;
-    std::map<OsmBound, std::size_t> by_left;
+    std::map<std::pair<bool, OsmBound>, std::size_t> by_left;  // drivable lanes, and the others beside them
     for (std::size_t i = 0; i < lanelets_.size(); ++i) {
       begins.emplace(lanelets_[i].begin, i);
-      by_left.try_emplace(lanelets_[i].left, i);
+      by_left.try_emplace({is_drivable(lanelets_[i].lanelet.type), lanelets_[i].left}, i);
     }
     for (auto& read : lanelets_) {
       auto const [first, last] = begins.equal_range(read.end);
@@ -362,7 +464,7 @@ class Lanelet2Reader {
         read.lanelet.successors.push_back(other.id);
         other.predecessors.push_back(read.lanelet.id);
       }
-      auto const beside = by_left.find(read.right);
+      auto const beside = by_left.find({is_drivable(read.lanelet.type), read.right});
       if (beside == by_left.end() || lanelets_[beside->second].lanelet.id == read.lanelet.id) continue;
       auto& other = lanelets_[beside->second].lanelet;
       if (other.left_neighbor) continue;
@@ -377,8 +479,15 @@ class Lanelet2Reader {
     int count = 0;
   };
 
+  /// The lanelets that name a rule, and whether the file has it.
+  struct Users {
+    std::vector<std::size_t> lanelets;
+    bool rule_seen = false;
+  };
+
   XmlContext context_;
   OsmWays ways_;
+  std::map<Id, Users> users_;
   std::map<std::string, Unread> unread_;
   std::map<std::vector<Id>, std::string> lights_;            ///< by their heads
   std::set<std::pair<std::size_t, std::size_t>> go_before_;  ///< pairs of lanelets, as the elements say

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -12,6 +13,8 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/stable_sort.hpp"
+#include "cambium/core/text.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/building/build_map.hpp"
 #include "cambium/map/building/map_builder.hpp"
@@ -48,6 +51,7 @@ class LaneletMapMaker {
           parts_ = &parts;
           find_lanes();
           link();
+          for (auto const& lane : parts.lanes) report_outside(lane);
           for (std::size_t i = 0; i < lanes_.size(); ++i) {
             if (!is_valid(lanes_[i])) continue;
             put_beside(i);
@@ -94,9 +98,11 @@ class LaneletMapMaker {
       auto elevation = elevation_along(plan.line, center.heights);
       (void)builder_.add_road(std::move(plan));
       if (!elevation.empty()) builder_.road(id).elevation = std::move(elevation);
-      if (lanelet.both_directions)
-        for (auto& written : builder_.road(id).lane_sections.front().lanes)
-          if (written.id != 0) written.direction = opendrive::LaneDirection::both;
+      for (auto& written : builder_.road(id).lane_sections.front().lanes) {
+        if (written.id == 0) continue;
+        written.line = lanelet.line;
+        if (lanelet.both_directions) written.direction = opendrive::LaneDirection::both;
+      }
       of_road_.push_back(i);
     } catch (MapError const& problem) {
       network_.report(Severity::warning, i, std::string(problem.what()) + "; the lanelet was left out");
@@ -107,13 +113,22 @@ class LaneletMapMaker {
   void add_priorities() {
     std::map<std::int64_t, std::size_t> places;
     for (std::size_t i = 0; i < network_.lanelets.size(); ++i) places.emplace(network_.lanelets[i].id, i);
-    for (auto& junction : builder_.document().junctions)
-      for (auto const& [number, id] : junctions_)
-        for (std::size_t i = 0; id == junction.id && i < network_.lanelets.size(); ++i)
-          for (auto const other : network_.lanelets[i].goes_before)
-            if (auto const at = places.find(other);
-                network_.junction_of[i] == number && at != places.end() && network_.junction_of[at->second] == number)
-              junction.priorities.push_back({std::to_string(network_.lanelets[i].id), std::to_string(other)});
+    auto& made = builder_.document().junctions;
+    std::map<std::string, std::size_t> numbers;
+    for (std::size_t k = 0; k < made.size(); ++k) numbers.emplace(made[k].id, k);
+    for (std::size_t i = 0; i < network_.lanelets.size(); ++i)
+      for (auto const other : network_.lanelets[i].goes_before) {
+        auto const at = places.find(other);
+        auto const junction = network_.junction_of[i];
+        auto const id = junctions_.find(junction);
+        if (at == places.end() || id == junctions_.end() || network_.junction_of[at->second] != junction)
+          network_.report(Severity::info, i,
+                          "it goes before lanelet " + std::to_string(other) +
+                              ", with which it shares no junction; that says nothing");
+        else
+          made[numbers.at(id->second)].priorities.push_back(
+              {std::to_string(network_.lanelets[i].id), std::to_string(other)});
+      }
   }
 
   [[nodiscard]] Lane& lane_of(LaneletNetwork::Way way) {
@@ -138,12 +153,47 @@ class LaneletMapMaker {
     }
   }
 
+  /// Reports a path that leaves the room between its bounds, as where these narrow and turn at once.
+  void report_outside(Lane const& lane) {
+    constexpr double most = 0.3, spacing = 1.0;  // [m]
+    constexpr int steps = 200;
+    if (!lane.drivable() || !lane.along_road) return;
+    auto ring = lane.left.points(), right = lane.right.points();
+    ring.insert(ring.end(), right.rbegin(), right.rend());
+    double farthest = most, where = 0.0;
+    int const count = std::clamp(static_cast<int>(lane.length() / spacing), 1, steps);
+    for (int k = 0; k <= count; ++k) {
+      double const s = lane.length() * k / count;
+      Point const p = lane.path.pose(s).position();
+      if (is_within(ring, p)) continue;
+      double const away = std::min({distance_to(ring, p), distance_to(std::array{ring.front(), ring.back()}, p)});
+      if (away > farthest) std::tie(farthest, where) = std::pair(away, s);
+    }
+    if (farthest > most)
+      network_.report(Severity::warning, of_road_[index_of(lane.road)],
+                      "its path leaves its bounds by " + cambium::detail::rounded_text(std::round(farthest * 10) / 10) +
+                          " m, " + cambium::detail::rounded_text(std::round(where)) + " m from its begin");
+  }
+
+  void report_kink(std::size_t i, Lane const& lane, Lane const& next) {
+    constexpr double most = 0.5;  // [rad]
+    double const kink =
+        std::abs(geometry::angle_difference(next.path.begin_pose().heading, lane.path.end_pose().heading));
+    if (kink > most)
+      network_.report(Severity::warning, i,
+                      "lanelet " + std::to_string(network_.lanelets[of_road_[index_of(next.road)]].id) + " continues " +
+                          cambium::detail::rounded_text(std::round(kink * 100) / 100) +
+                          " rad off its direction; the link was kept");
+  }
+
   void link() {
     for (auto const& [from, to] : network_.links)
       if (is_valid(lanes_[from.lanelet]) && is_valid(lanes_[to.lanelet])) {
         auto &before = lane_of(from), &behind = lane_of(to);
         before.successors.push_back(behind.id);
         behind.predecessors.push_back(before.id);
+        if (!from.backwards && !to.backwards && before.drivable() && !network_.inferred.contains({from, to}))
+          report_kink(from.lanelet, before, behind);
       }
     for (auto& lane : parts_->lanes) {
       std::sort(lane.successors.begin(), lane.successors.end());

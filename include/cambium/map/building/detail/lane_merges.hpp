@@ -3,24 +3,32 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/building/detail/lane_geometry.hpp"
+#include "cambium/map/building/detail/path_check.hpp"
 #include "cambium/map/building/detail/section_sampler.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::map::detail {
 
-/// Lets a lane's path swing over onto that of its neighbour `onto`, of whatever road, and go on with it to its end:
-/// from a little before where the lane narrows, or over the last `longest` [m] of one that does not.
-inline void swing_over(Lane& lane, Lane const& onto, double longest) {
-  constexpr double shortest = 30.0, spacing = 1.0;  // [m]
+/// Where a lane that merges leaves its middle: a little before it narrows, or over the last `longest` [m] of one that
+/// does not.
+struct MergeBegin {
+  double from = 0.0;  ///< [m] from its begin
+  bool narrows = false;
+};
+[[nodiscard]] inline MergeBegin merge_begin(Lane const& lane, double longest) {
+  constexpr double shortest = 30.0;  // [m]
   double const length = lane.length();
   auto const width = [&lane](std::size_t i) { return lane.widths[i].left + lane.widths[i].right; };
   double widest = 0.0;
@@ -28,9 +36,31 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
   auto narrow = lane.widths.size() - 1;
   if (width(narrow) < 0.5 * widest)
     while (narrow > 0 && width(narrow) < 0.95 * widest) --narrow;
-  double const taper = narrow + 1 < lane.widths.size() ? 1.3 * (length - lane.path.segments()[narrow].s) : 0.0;
-  double const swing = taper == 0.0 ? longest : std::clamp(taper, shortest, std::max(shortest, longest));
-  double const from = std::max(0.0, length - swing);
+  bool const narrows = narrow + 1 < lane.widths.size();
+  double const taper = narrows ? 1.3 * (length - lane.path.segments()[narrow].s) : 0.0;
+  double const swing = narrows ? std::clamp(taper, shortest, std::max(shortest, longest)) : longest;
+  return {std::max(0.0, length - swing), narrows};
+}
+
+/// Why a lane must not, or cannot, merge into its neighbour `onto`; null where it may. One that narrows to nothing
+/// leaves no choice, whatever the line says.
+[[nodiscard]] inline char const* fault_of_merge(Lane const& lane, Lane const& onto, double longest) {
+  constexpr double steepest = 0.5, tightest = 0.2;  // slope; curvature [1/m]
+  auto const [from, narrows] = merge_begin(lane, longest);
+  auto const& changes = onto.id == lane.left_neighbor ? lane.left_changes : lane.right_changes;
+  if (!narrows && changes.empty()) return "the line between them forbids the change";
+  auto const end = lane.path.end_pose().position();
+  double const way = lane.length() - from, aside = std::abs(onto.path.project(end).lateral);
+  // The largest slope and curvature of a `Smoothstep` across.
+  if (1.875 * aside > steepest * way || 5.78 * aside > tightest * way * way) return "it is too short for a merge";
+  return nullptr;
+}
+
+/// Lets a lane's path swing over onto that of its neighbour `onto`, of whatever road, and go on with it to its end,
+/// from where `merge_begin` says.
+inline void swing_over(Lane& lane, Lane const& onto, double longest) {
+  constexpr double spacing = 1.0;  // [m]
+  double const length = lane.length(), from = merge_begin(lane, longest).from;
 
   auto const across = [&](double s) {  // to the neighbour's path, left positive [m]
     auto const at = lane.path.pose(s);
@@ -91,21 +121,39 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
   move_places([&](double station) { return lane.position_at(station); });
 }
 
-/// Lets lanes that end while their neighbour goes on merge into that one; from the lanes that go on outwards, for one
-/// may merge into another that merges itself.
-inline void merge_into_neighbors(Map::Parts& parts) {
+/// Lets lanes that end while their neighbour goes on merge into that one, with a finding; from the lanes that go on
+/// outwards, for one may merge into another that merges itself. Those that cannot are dead ends.
+inline void merge_into_neighbors(Map::Parts& parts, LaneFindings const& findings) {
+  auto const name = [&](Lane const& lane) { return parts.roads[index_of(lane.road)].name; };
+  std::map<LaneId, std::pair<LaneId, char const*>> refused;  // the neighbour, and why
+  auto const merge = [&](Lane& lane) {
+    for (auto const side : {lane.left_neighbor, lane.right_neighbor}) {
+      if (!is_valid(side)) continue;
+      auto const& beside = parts.lanes[index_of(side)];
+      if (beside.successors.empty()) continue;
+      if (char const* const fault = fault_of_merge(lane, beside, parts.options.merge_length)) {
+        refused.try_emplace(lane.id, side, fault);
+        continue;
+      }
+      swing_over(lane, beside, parts.options.merge_length);
+      lane.successors = beside.successors;
+      for (auto const next : lane.successors) parts.lanes[index_of(next)].predecessors.push_back(lane.id);
+      findings.add(lane, Severity::info, "it ends beside lanelet " + name(beside) + ", and was merged into that one");
+      return true;
+    }
+    return false;
+  };
   for (bool found = true; found;) {
     found = false;
     for (auto& lane : parts.lanes)
-      for (auto const side : {lane.left_neighbor, lane.right_neighbor}) {
-        if (!is_valid(side) || !lane.successors.empty()) continue;
-        auto const& beside = parts.lanes[index_of(side)];
-        if (beside.successors.empty()) continue;
-        swing_over(lane, beside, parts.options.merge_length);
-        lane.successors = beside.successors;
-        for (auto const next : lane.successors) parts.lanes[index_of(next)].predecessors.push_back(lane.id);
-        found = true;
-      }
+      if (lane.successors.empty() && merge(lane)) found = true;
+  }
+  for (auto const& [id, why] : refused) {
+    auto const& lane = parts.lanes[index_of(id)];
+    if (lane.successors.empty())
+      findings.add(lane, Severity::info,
+                   "it ends beside lanelet " + name(parts.lanes[index_of(why.first)]) + ", but " + why.second +
+                       ": it is a dead end");
   }
 }
 

@@ -71,8 +71,8 @@ namespace cambium::map::detail {
 class MapBuild {
  public:
   MapBuild(OpenDriveDocument const& document, MapOptions const& options, std::string file,
-           std::vector<Diagnostic>& diagnostics)
-      : document_(document), findings_{std::move(file), diagnostics} {
+           std::vector<Diagnostic>& diagnostics, bool roads_are_lanelets = false)
+      : document_(document), findings_{std::move(file), diagnostics}, roads_are_lanelets_(roads_are_lanelets) {
     parts_.options = options;
   }
 
@@ -87,6 +87,7 @@ class MapBuild {
   // The stages of `build`, in their order. Who does one of them in another way changes `parts`.
 
   [[nodiscard]] Map::Parts& parts() { return parts_; }
+  [[nodiscard]] LaneFindings lane_findings() { return {parts_.roads, document_, findings_, roads_are_lanelets_}; }
 
   /// Roads, and lanes with their geometry and neighbours.
   void add_lanes() {
@@ -124,7 +125,7 @@ class MapBuild {
 
   /// Junctions and overlaps: all that a world needs.
   [[nodiscard]] std::shared_ptr<Map const> finish(ExactPath const& path) {
-    report_paths(parts_.lanes, parts_.roads, document_, findings_);
+    report_paths(parts_.lanes, lane_findings());
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
     find_overlaps(
@@ -206,6 +207,7 @@ class MapBuild {
 
   OpenDriveDocument const& document_;
   Findings findings_;
+  bool roads_are_lanelets_ = false;  ///< findings name them so
   Map::Parts parts_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -48,30 +49,58 @@ struct SharpestTurn {
   });
 }
 
-/// Reports drivable lanes that no vehicle can follow: their paths turn by more than 1 rad within a metre or run back,
-/// as on the inner side of a bend that is tighter than the lane is far from it; or they have no width.
-inline void report_paths(std::span<Lane const> lanes, std::span<Road const> roads, OpenDriveDocument const& document,
-                         Findings& findings) {
-  constexpr double sharpest = 1.0;  // [rad], a radius of a metre
-  using cambium::detail::rounded_text;
-  for (auto const& lane : lanes) {
-    if (!lane.drivable()) continue;
+/// Where a path first moves by more than 0.5 rad off its own heading [m]; nothing where it never does.
+[[nodiscard]] inline std::optional<double> moves_sideways(geometry::Line const& path) {
+  constexpr double most = 0.5, shortest = 0.2;  // [rad], [m] of a step
+  for (auto const& segment : path.segments()) {
+    double const middle = segment.heading + 0.5 * segment.curvature * segment.length;
+    if (segment.length >= shortest &&
+        std::abs(geometry::angle_difference(std::atan2(segment.uy, segment.ux), middle)) > most)
+      return segment.s;
+  }
+  return std::nullopt;
+}
+
+/// Adds findings about lanes, with their names and lines in the file.
+struct LaneFindings {
+  std::span<Road const> roads;
+  OpenDriveDocument const& document;
+  Findings& findings;
+  bool roads_are_lanelets = false;
+
+  void add(Lane const& lane, Severity severity, std::string sentence) const {
     auto const& road = roads[index_of(lane.road)];
-    auto const report = [&](std::string sentence) {
-      auto const* const written = document.roads[index_of(lane.road)].lane_sections[lane.section].find(lane.number);
+    auto const* const written = document.roads[index_of(lane.road)].lane_sections[lane.section].find(lane.number);
+    int const line = written != nullptr ? static_cast<int>(written->line) : 0;
+    if (roads_are_lanelets)
+      findings.add(severity, line, "lanelet", "lanelet " + road.name, std::move(sentence));
+    else
       findings.add(
-          Severity::warning, written != nullptr ? static_cast<int>(written->line) : 0, "lane",
+          severity, line, "lane",
           "road " + road.name + ", section " + std::to_string(lane.section) + ", lane " + std::to_string(lane.number),
           std::move(sentence));
-    };
+  }
+};
+
+/// Reports drivable lanes that no vehicle can follow: their paths turn by more than 1 rad within a metre, run back, as
+/// on the inner side of a bend that is tighter than the lane is far from it, or move sideways; or they have no width.
+inline void report_paths(std::span<Lane const> lanes, LaneFindings const& findings) {
+  constexpr double sharpest = 1.0;  // [rad], a radius of a metre
+  using cambium::detail::rounded_text;
+  auto const place = [](double s) { return rounded_text(std::round(s * 100) / 100) + " m from its begin"; };
+  for (auto const& lane : lanes) {
+    if (!lane.drivable()) continue;
+    auto const report = [&](std::string sentence) { findings.add(lane, Severity::warning, std::move(sentence)); };
     auto const found = sharpest_turn(lane.path);
     if (found.turn > sharpest)
       report("its path turns by " + rounded_text(std::round(found.turn * 100) / 100) + " rad within a metre, " +
-             rounded_text(std::round(found.s * 100) / 100) + " m from its begin: no vehicle can follow it");
-    else if (runs_back(lane, road))
+             place(found.s) + ": no vehicle can follow it");
+    else if (runs_back(lane, findings.roads[index_of(lane.road)]))
       report("its path runs backwards: the road bends more tightly than the lane lies from its reference line");
+    else if (auto const s = moves_sideways(lane.path))
+      report("its path moves sideways, " + place(*s) + ": no vehicle can follow it");
     if (std::all_of(lane.widths.begin(), lane.widths.end(), [](SideWidths const& w) { return w.left + w.right < 0.1; }))
-      report("it is driven on, but has no width");
+      report("the lane is drivable but has no width");
   }
 }
 

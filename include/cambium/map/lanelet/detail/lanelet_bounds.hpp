@@ -118,8 +118,7 @@ struct LaneletCenter {
 };
 
 /// The height at share `u` of a bound's length; `heights` are those of its points.
-[[nodiscard]] inline double height_at(std::span<Point const> bound, std::span<double const> heights, double u) {
-  Rail const rail(bound);
+[[nodiscard]] inline double height_at(Rail const& rail, std::span<double const> heights, double u) {
   double const place = u * rail.length();
   auto const next = std::upper_bound(rail.s.begin() + 1, rail.s.end() - 1, place) - rail.s.begin();
   auto const i = static_cast<std::size_t>(next);
@@ -133,6 +132,7 @@ struct LaneletCenter {
 [[nodiscard]] inline LaneletCenter center_of(Lanelet const& lanelet) {
   constexpr double shortest = 0.25;  // [m] of a straight piece
   FacingBounds const bounds(lanelet);
+  Rail const left_rail(lanelet.left), right_rail(lanelet.right);
   std::vector<double> corners;
   auto const middle = [&](double u) { return bounds.middle(u); };
   for (double const u : bounds.shares)
@@ -151,8 +151,8 @@ struct LaneletCenter {
       double const half = 0.5 * std::max(0.0, across.y() * way.x() - across.x() * way.y());
       center.widths.push_back({half, half});
       if (!lanelet.left_heights.empty())
-        center.heights.push_back(0.5 * (height_at(lanelet.left, lanelet.left_heights, u) +
-                                        height_at(lanelet.right, lanelet.right_heights, u)));
+        center.heights.push_back(
+            0.5 * (height_at(left_rail, lanelet.left_heights, u) + height_at(right_rail, lanelet.right_heights, u)));
     };
     if (i == 0) add(0.0, begin);
     center.corners.push_back(i == 0 ? 0.75 * begin + 0.25 * end : begin);
@@ -183,6 +183,40 @@ struct LaneletCenter {
     nearest = std::min(nearest, (p - (line[i] + u * way)).norm());
   }
   return nearest;
+}
+
+/// Whether `p` lies within the ring, which may touch or cross itself: by the crossings of a ray.
+[[nodiscard]] inline bool is_within(std::span<Point const> ring, Point const& p) {
+  bool inside = false;
+  for (std::size_t i = 0, k = ring.size() - 1; i < ring.size(); k = i++) {
+    auto const &a = ring[i], &b = ring[k];
+    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
+      inside = !inside;
+  }
+  return inside;
+}
+
+/// Whether the bounds cross and lie on each other's sides by more than 0.1 m. Those that end aslant may face each
+/// other the wrong way round without crossing.
+[[nodiscard]] inline bool bounds_cross(Lanelet const& lanelet) {
+  constexpr double most = 0.1;  // [m] by which they may lie on each other's sides
+  FacingBounds const bounds(lanelet);
+  auto const wrong = [&](double u, double v) {
+    Point const way = bounds.middle(v) - bounds.middle(u), across = bounds.left.at(u) - bounds.right.at(u);
+    return across.y() * way.x() - across.x() * way.y() < -most * way.norm();
+  };
+  bool any = false;
+  for (std::size_t i = 0; i + 1 < bounds.shares.size(); ++i) any = any || wrong(bounds.shares[i], bounds.shares[i + 1]);
+  if (!any) return false;
+  auto const &l = lanelet.left, &r = lanelet.right;
+  for (std::size_t i = 0; i + 1 < l.size(); ++i)
+    for (std::size_t k = 0; k + 1 < r.size(); ++k) {
+      auto const side = [](Point const& a, Point const& b, Point const& p) { return geometry::turn(a, b, p); };
+      if (side(l[i], l[i + 1], r[k]) * side(l[i], l[i + 1], r[k + 1]) < 0.0 &&
+          side(r[k], r[k + 1], l[i]) * side(r[k], r[k + 1], l[i + 1]) < 0.0)
+        return true;
+    }
+  return false;
 }
 
 /// From which point of a lanelet's middle to which its left (else its right) bound runs along `line`.

@@ -9,6 +9,7 @@
 #include <map>
 #include <numeric>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,6 +68,7 @@ class LaneletNetwork {
   std::vector<Lanelet> lanelets;
   std::vector<LaneletCenter> centers;    ///< of each lanelet
   std::vector<Link> links;               ///< sorted
+  std::set<Link> inferred;               ///< links that no lanelet names: each is a finding already
   std::vector<std::size_t> right_of;     ///< the neighbour of each lanelet; `nobody` without one
   std::vector<std::size_t> junction_of;  ///< lanelets of one number lie in one junction; `nobody`: in none
   /// Direction of each lanelet's path at its begin and end where it meets others [rad].
@@ -115,6 +117,10 @@ class LaneletNetwork {
         report(Severity::warning, lanelet, std::string(fault) + "; the lanelet was left out");
         continue;
       }
+      if (bounds_cross(lanelet)) {
+        report(Severity::warning, lanelet, "its bounds cross each other; the lanelet was left out");
+        continue;
+      }
       if (swapped) report(Severity::warning, lanelet, "its left bound lies to the right; the bounds were exchanged");
       if (!places_.emplace(lanelet.id, lanelets.size()).second) {
         report(Severity::warning, lanelet, "its id is taken already; the lanelet was left out");
@@ -145,6 +151,13 @@ class LaneletNetwork {
   [[nodiscard]] double apart(Way from, Way to) const {
     auto const end = gate(from, true), begin = gate(to, false);
     return std::max((end.first - begin.first).norm(), (end.second - begin.second).norm());
+  }
+
+  /// The height where a way begins or ends [m]; 0 where none is known.
+  [[nodiscard]] double height(Way way, bool at_end) const {
+    auto const& heights = centers[way.lanelet].heights;
+    if (heights.empty()) return 0.0;
+    return at_end == way.backwards ? heights.front() : heights.back();
   }
 
   void find_links() {
@@ -198,11 +211,13 @@ class LaneletNetwork {
       auto to = std::partition_point(ways.begin(), ways.end(), [&](Way way) { return place(way) < x - rounding; });
       for (; to != ways.end() && place(*to) <= x + rounding; ++to) {
         if (from.lanelet == to->lanelet || !(apart(from, *to) <= rounding)) continue;
+        if (std::abs(height(from, true) - height(*to, false)) > clear_height) continue;  // on different decks
         Link const link{from, *to};
         bool const fits = is_drivable(lanelets[from.lanelet].type) == is_drivable(lanelets[to->lanelet].type);
         if (!fits || std::binary_search(named.begin(), named.end(), link)) continue;
         links.push_back(link);
         if (from.backwards || to->backwards) continue;
+        inferred.insert(link);
         report(Severity::warning, from.lanelet,
                "lanelet " + std::to_string(lanelets[to->lanelet].id) +
                    " begins where it ends, and neither names the other; the two were joined");

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -129,12 +130,36 @@ class OsmWays {
     context_.report(Severity::warning, node, std::move(sentence));
   }
 
+  /// The nodes of ways that relations have as bounds: others do not say where a map lies.
+  [[nodiscard]] static std::set<Id> nodes_of_lanelets(pugi::xml_node root) {
+    std::set<Id> ways, nodes;
+    for_each_child(root, "relation", [&](pugi::xml_node relation) {
+      for_each_child(relation, "member", [&](pugi::xml_node member) {
+        std::string_view const role = member.attribute("role").value();
+        if (role != "left" && role != "right") return;
+        if (auto const id = parse_number<Id>(member.attribute("ref").value())) ways.insert(*id);
+      });
+    });
+    for_each_child(root, "way", [&](pugi::xml_node way) {
+      auto const id = parse_number<Id>(way.attribute("id").value());
+      if (!id || !ways.contains(*id)) return;
+      for_each_child(way, "nd", [&](pugi::xml_node node) {
+        if (auto const ref = parse_number<Id>(node.attribute("ref").value())) nodes.insert(*ref);
+      });
+    });
+    return nodes;
+  }
+
   void read_nodes(pugi::xml_node root, std::optional<Lanelet2Origin> const& given) {
     std::map<Id, Point> local, degrees;  // of these x is the longitude
-    geometry::Box box;
+    geometry::Box box;  // of the nodes that count; longitudes relative to the first one's turn of the globe
+    auto const used = nodes_of_lanelets(root);
+    std::optional<double> first;
     for_each_child(root, "node", [&](pugi::xml_node node) {
       auto const id = osm_id(context_, node);
       if (!id) return;
+      if (degrees.contains(*id))
+        return warn(node, "node " + std::to_string(*id) + " is there already; the second one was left out");
       auto const x = parse_number<double>(osm_tag(node, "local_x")), y = parse_number<double>(osm_tag(node, "local_y"));
       if (x && y) local.emplace(*id, Point{*x, *y});
       if (auto const height = parse_number<double>(osm_tag(node, "ele"))) heights_.emplace(*id, *height);
@@ -147,7 +172,9 @@ class OsmWays {
                            " has no place: lat and lon are not both numbers of degrees within the UTM grid",
                        "repair the node, or give it tags local_x and local_y in metres");
       degrees.emplace(*id, is_placed ? Point{*longitude, *latitude} : Point{std::nan(""), std::nan("")});
-      if (is_placed) box.add(*longitude, *latitude);
+      if (!is_placed || (!used.empty() && !used.contains(*id))) return;
+      first = first.value_or(*longitude);
+      box.add(*first + std::remainder(*longitude - *first, 360.0), *latitude);
     });
     if (!local.empty() && local.size() == degrees.size()) return static_cast<void>(nodes_ = std::move(local));
     for (auto const& [id, place] : degrees)
@@ -156,8 +183,16 @@ class OsmWays {
                        "node " + std::to_string(id) + " has only a local place, and other nodes have none",
                        "give all nodes local_x and local_y, or all lat and lon");
     if (degrees.empty()) return;
-    auto const origin = given.value_or(middle_of(box));
-    warn_if_far(box, origin);
+    if (!local.empty())
+      for (auto const& [id, place] : degrees)
+        if (!local.contains(id)) {
+          context_.report(Severity::warning, 0, "node",
+                          "node " + std::to_string(id) +
+                              " has no local_x and local_y, as others have: all places come from lat and lon");
+          break;
+        }
+    auto const origin = given.value_or(first ? middle_of(box) : Lanelet2Origin{});
+    if (first) warn_if_far(box, origin);
     UtmProjection const projection(origin.latitude, origin.longitude);
     for (auto const& [id, place] : degrees) nodes_.emplace(id, projection(place.y(), place.x()));
   }
@@ -172,8 +207,8 @@ class OsmWays {
   void warn_if_far(geometry::Box const& degrees, Lanelet2Origin const& origin) {
     constexpr double far = 100.0, of_degree = 111.2;  // [km]
     double const north = std::max(std::abs(degrees.max_y - origin.latitude), std::abs(degrees.min_y - origin.latitude)),
-                 east =
-                     std::max(std::abs(degrees.max_x - origin.longitude), std::abs(degrees.min_x - origin.longitude));
+                 east = std::max(std::abs(std::remainder(degrees.max_x - origin.longitude, 360.0)),
+                                 std::abs(std::remainder(degrees.min_x - origin.longitude, 360.0)));
     double const way = of_degree * std::hypot(north, east * std::cos(origin.latitude * geometry::pi / 180));
     if (way > far)
       context_.report(Severity::warning, 0, "node",
@@ -185,6 +220,10 @@ class OsmWays {
     auto const id = osm_id(context_, node);
     if (!id) return;
     OsmWay way{{}, std::string(osm_tag(node, "type")), std::string(osm_tag(node, "subtype"))};
+    for (char const* key : {"lane_change", "lane_change:left", "lane_change:right"})
+      if (auto const word = osm_tag(node, key); !word.empty() && !osm_truth(word))
+        warn(node, "way " + std::to_string(*id) + ": " + key + "=" + std::string(word) +
+                       " is neither yes nor no; it was left out");
     way.change = osm_truth(osm_tag(node, "lane_change"));
     way.change_left = osm_truth(osm_tag(node, "lane_change:left"));
     way.change_right = osm_truth(osm_tag(node, "lane_change:right"));
@@ -199,7 +238,8 @@ class OsmWays {
         warn(child, "way " + std::to_string(*id) + " names node " + std::to_string(*ref) +
                         ", which is not there; it was left out");
     });
-    ways_.emplace(*id, std::move(way));
+    if (!ways_.emplace(*id, std::move(way)).second)
+      warn(node, "way " + std::to_string(*id) + " is there already; the second one was left out");
   }
 
   XmlContext& context_;
