@@ -20,7 +20,6 @@
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/write_file.hpp"
-#include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/metrics/displacement.hpp"
 #include "cambium/evaluation/metrics/per_agent.hpp"
@@ -115,9 +114,10 @@ Outcome run(cb::RecordedScenario<Sim> const& recorded, Settings const& settings,
   };
   if (world.roster().slot_of(ego)) outcome.ego.push_back(world.state(ego));
   std::size_t entered = 0;
-  auto const is_in_time = [&](cb::GoalState const& goal) {
+  auto const is_solved = [&] {
+    auto const at = world.situation(ego);
     double const time = recorded.begin + world.time();
-    return time >= goal.first_time - 1e-9 && time <= goal.last_time + 1e-9;
+    return std::ranges::any_of(problem->goals, [&](auto const& goal) { return goal.holds(at, time); });
   };
   while (outcome.collision.empty() && !outcome.solved && world.time() + settings.step <= recorded.duration() + 1e-9) {
     entered = recorded.enter(world, entered);
@@ -127,8 +127,7 @@ Outcome run(cb::RecordedScenario<Sim> const& recorded, Settings const& settings,
                           (is_valid(pair->second) ? to_string(pair->second) : std::string("an obstacle"));
     outcome.displacements.observe(world, settings.step);
     note();
-    if (problem != nullptr && outcome.collision.empty() && world.roster().slot_of(ego))
-      outcome.solved = cb::AtGoal{}(world, world.slot_of(ego)) && std::ranges::any_of(problem->goals, is_in_time);
+    if (problem != nullptr && outcome.collision.empty() && world.roster().slot_of(ego)) outcome.solved = is_solved();
   }
   return outcome;
 }
