@@ -1,10 +1,17 @@
 // What a CommonRoad file says in other words than usual: it is read as meant, or a finding names it.
 #include <doctest/doctest.h>
 
+#include <cstdint>
+#include <limits>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cambium/scenario/dataset/common_road.hpp"
+#include "cambium/scenario/dataset/common_road_writer.hpp"
+
+#include "../support/error_of.hpp"
 
 using namespace cambium;
 using map::LightColor;
@@ -204,4 +211,88 @@ TEST_CASE("values that cannot be meant, links given once and ids given twice are
   CHECK(has(twice, "lanelet 1 is there already"));
   CHECK(has(twice, "id 8 is taken already"));
   CHECK(twice.lanelets.size() == 1);
+}
+
+TEST_CASE("the first of several shapes is an obstacle's, and those that move keep their outline") {
+  std::string const polygon =
+                        "<polygon><point><x>0</x><y>0</y></point><point><x>10</x><y>10</y></point><point><x>10</x>"
+                        "<y>10.5</y></point><point><x>0</x><y>0.5</y></point></polygon>",
+                    rectangle = "<rectangle><length>4</length><width>2</width></rectangle>";
+  auto const obstacle = [&](std::string const& kind, std::string const& shape) {
+    return read(lanelet(1, 0) + "<" + kind + " id='12'><type>car</type><shape>" + shape +
+                "</shape><initialState><position><point><x>10</x><y>-1</y></point></position><orientation><exact>0"
+                "</exact></orientation><time><exact>0</exact></time><velocity><exact>0</exact></velocity>"
+                "</initialState></" +
+                kind + ">");
+  };
+  auto const wall = obstacle("staticObstacle", polygon + rectangle);
+  CHECK(wall.track(12).outline.size() == 4);
+  CHECK(has(wall, "it has several shapes; the first one, a polygon, was taken"));
+  CHECK(obstacle("staticObstacle", rectangle + polygon).track(12).outline.empty());
+  auto const moving = obstacle("dynamicObstacle", polygon);
+  CHECK(moving.track(12).outline.size() == 4);
+  CHECK(has(moving, "obstacle 12 drives as the rectangle around it"));
+  CHECK(parse_common_road(common_road_text(moving)).tracks == moving.tracks);
+}
+
+TEST_CASE("a goal whose time ends before it begins is left out") {
+  auto const traffic = read(
+      lanelet(1, 0) +
+      "<planningProblem id='50'><initialState><position><point><x>1</x><y>-1</y></point></position><orientation><exact>"
+      "0</exact></orientation><time><exact>0</exact></time><velocity><exact>5</exact></velocity></initialState>"
+      "<goalState><time><intervalStart>20</intervalStart><intervalEnd>10</intervalEnd></time></goalState>"
+      "</planningProblem>");
+  CHECK(traffic.problems.at(0).goals.empty());
+  CHECK(has(traffic, "its time ends before it begins; the goal was left out"));
+}
+
+TEST_CASE("lanelets of all types that have words are written as they are read") {
+  using map::LaneType;
+  for (auto const type : {LaneType::driving, LaneType::shoulder, LaneType::sidewalk, LaneType::bus, LaneType::biking,
+                          LaneType::on_ramp, LaneType::off_ramp, LaneType::walking, LaneType::parking, LaneType::border,
+                          LaneType::restricted, LaneType::rail, LaneType::taxi, LaneType::shared})
+    for (bool const inside : {false, true})
+      for (bool const both : {false, true}) {
+        auto traffic = read(lanelet(1, 0));
+        traffic.lanelets[0].type = type;
+        traffic.lanelets[0].in_junction = inside;
+        traffic.lanelets[0].both_directions = both;
+        auto const text = common_road_text(traffic);
+        CAPTURE(text);
+        CHECK(parse_common_road(text).lanelets == traffic.lanelets);
+      }
+}
+
+TEST_CASE("what CommonRoad cannot say is an error of the writer") {
+  auto const error = [](auto const& change) {
+    auto traffic = read(lanelet(1, 0) + lanelet(2, -20));
+    traffic.problems.push_back({.id = 100, .initial = {0.0, 1.0, -1.0, 0.0, 5.0}, .goals = {GoalState{}}});
+    auto& goal = traffic.problems[0].goals[0];
+    std::tie(goal.first_time, goal.last_time) = std::pair(1.0, 4.0);
+    change(traffic, goal);
+    return support::error_of([&] { return common_road_text(traffic); });
+  };
+  auto const fails = [&](auto const& change, std::string const& words) {
+    auto const text = error(change);
+    CHECK_MESSAGE(text.find(words) != std::string::npos, words, "\n", text);
+  };
+  fails(
+      [](RecordedTraffic& traffic, GoalState&) {
+        traffic.lanelets[0].signals = {{map::SignalKind::stop, 0.0, {}}, {map::SignalKind::light, 20.0, "7"}};
+      },
+      "lanelet 1: its signals are at several places");
+  fails([](RecordedTraffic& traffic, GoalState&) { traffic.lanelets[1].goes_before = {1}; },
+        "lanelet 2: CommonRoad cannot say which lanelets it goes before");
+  fails([](RecordedTraffic& traffic, GoalState&) { traffic.lanelets[1].id = 1; },
+        "lanelet 1: there is another one of that id");
+  fails([](RecordedTraffic& traffic, GoalState&) { traffic.lanelets[1].type = map::LaneType::median; },
+        "lanelet 2: CommonRoad has no word for its type, \"median\"");
+  fails([](RecordedTraffic&, GoalState& goal) { goal.last_time = std::numeric_limits<double>::infinity(); },
+        "planning problem 100: a goal has no first or no last time");
+  CHECK(error([](RecordedTraffic& traffic, GoalState& goal) {
+          goal.limits.lowest_speed = 2000.0;
+          auto const limits = parse_common_road(common_road_text(traffic)).problems.at(0).goals.at(0).limits;
+          CHECK(limits.lowest_speed == 2000.0);
+          CHECK(limits.highest_speed == 3000.0);
+        }) == "no error");
 }

@@ -41,6 +41,27 @@ inline constexpr std::pair<std::string_view, map::LaneType> common_road_lane_typ
 inline constexpr std::string_view common_road_driving[] = {
     "urban", "country", "highway", "driveWay", "mainCarriageWay", "interstate", "busStop", "intersection", "unknown"};
 
+/// The words of those that lanelets of a type are for.
+[[nodiscard]] inline std::vector<std::string_view> common_road_users(map::LaneType type) {
+  switch (type) {
+    case map::LaneType::biking:
+      return {"bicycle"};
+    case map::LaneType::walking:
+    case map::LaneType::sidewalk:
+      return {"pedestrian"};
+    case map::LaneType::shared:
+      return {"bicycle", "pedestrian"};
+    case map::LaneType::bus:
+      return {"bus"};
+    case map::LaneType::taxi:
+      return {"taxi"};
+    case map::LaneType::rail:
+      return {"train"};
+    default:
+      return {"vehicle"};
+  }
+}
+
 /// The words of line markings, and whether they permit a change from their left and from their right, as seen along
 /// them.
 struct CommonRoadMarking {
@@ -105,8 +126,12 @@ class CommonRoadLanes : protected CommonRoadSignals {
       return warn(node, "lanelet " + std::to_string(*id) + " was left out, see the previous finding");
     }
     users_.clear();
+    both_ways_.clear();
     xml::for_each_child(node, [&](Node child, std::string_view name) { read_lanelet_part(child, name, lanelet); });
     if (lanelet.type == map::LaneType::driving) lanelet.type = type_for_users();
+    lanelet.both_directions = both_ways_.contains("vehicle") || both_ways_.contains("car");
+    for (auto const user : common_road_users(lanelet.type))
+      lanelet.both_directions = lanelet.both_directions || both_ways_.contains(std::string(user));
     if (auto const line = xml::find_child(node, "stopLine")) read_stop_line(line, lanelet);
     traffic_.lanelets.push_back(std::move(lanelet));
   }
@@ -163,8 +188,7 @@ class CommonRoadLanes : protected CommonRoadSignals {
         warn(node, "\"" + std::string(text_of(node)) + "\" is no speed between 0 and 1000 m/s; it was left out");
     } else if (name == "userOneWay" || name == "userBidirectional") {
       users_.emplace(text_of(node));
-      if (name == "userBidirectional" && (text_of(node) == "vehicle" || text_of(node) == "car"))
-        lanelet.both_directions = true;
+      if (name == "userBidirectional") both_ways_.emplace(text_of(node));
     } else if (name == "trafficSignRef" || name == "trafficLightRef") {
       if (auto const ref = reference(node)) add_signal(node, *ref, 0.0, lanelet);
     }
@@ -317,8 +341,8 @@ class CommonRoadLanes : protected CommonRoadSignals {
     }
   }
 
-  std::map<Id, std::size_t> places_;  ///< of the lanelets
-  std::set<std::string> users_;       ///< of the lanelet that is being read
+  std::map<Id, std::size_t> places_;         ///< of the lanelets
+  std::set<std::string> users_, both_ways_;  ///< of the lanelet that is being read
   std::vector<PendingArrow> arrows_;
   std::map<std::pair<Id, Id>, map::Arrow> turns_;  ///< of a lanelet and one behind it
 };
