@@ -1,6 +1,7 @@
 // What a CommonRoad file says in other words than usual: it is read as meant, or a finding names it.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -233,6 +234,23 @@ TEST_CASE("the first of several shapes is an obstacle's, and those that move kee
   CHECK(moving.track(12).outline.size() == 4);
   CHECK(has(moving, "obstacle 12 drives as the rectangle around it"));
   CHECK(parse_common_road(common_road_text(moving)).tracks == moving.tracks);
+}
+
+TEST_CASE("outlines of any numbers are read as they were written") {
+  int same = 0;
+  for (int k = 0; k < 100; ++k) {
+    std::string shape = "<polygon>";
+    for (int i = 0; i < 3; ++i)
+      shape += "<point><x>" + std::to_string(3.0 * std::cos(2.1 * i + k)) + "</x><y>" +
+               std::to_string(7.0 * std::sin(2.1 * i + k) + 0.1 * k) + "</y></point>";
+    auto const traffic = read(lanelet(1, 0) + "<dynamicObstacle id='12'><type>car</type><shape>" + shape +
+                              "</polygon></shape><initialState><position><point><x>10</x><y>-1</y></point></position>"
+                              "<orientation><exact>0.3</exact></orientation><time><exact>0</exact></time><velocity>"
+                              "<exact>0</exact></velocity></initialState></dynamicObstacle>");
+    REQUIRE(traffic.track(12).outline.size() == 3);
+    same += parse_common_road(common_road_text(traffic)).tracks == traffic.tracks;
+  }
+  CHECK(same == 100);
 }
 
 TEST_CASE("a goal whose time ends before it begins is left out") {

@@ -123,7 +123,7 @@ class CommonRoadValues {
     return child ? point(child).value_or(geometry::Point{}) : geometry::Point{};
   }
 
-  /// To a nanometre: cosines of right angles are not 0.
+  /// To a nanometre: cosines of right angles are not 0, and sums have rounding errors.
   [[nodiscard]] static geometry::Point rounded(geometry::Point const& p) {
     return {std::round(p.x() * 1e9) / 1e9, std::round(p.y() * 1e9) / 1e9};
   }
@@ -166,9 +166,10 @@ class CommonRoadValues {
       box.add(p->x(), p->y());
     });
     if (!good || shape.outline.size() < 3) return std::nullopt;
-    shape.center = box.center();
-    shape.length = box.max_x - box.min_x;
-    shape.width = box.max_y - box.min_y;
+    shape.center = rounded(box.center());  // what is written about its middle has its middle at (0, 0), then
+    auto const size = rounded({box.max_x - box.min_x, box.max_y - box.min_y});
+    shape.length = size.x();
+    shape.width = size.y();
     return shape;
   }
 
