@@ -49,12 +49,14 @@ struct Settings {
   std::uint64_t window = 0;
   std::optional<std::int64_t> ego;
   std::vector<std::int64_t> replaced;
+  std::vector<double> origin;
   bool lists = false, replaces_all = false;
 };
 
 bool is_common_road(Settings const& settings) { return std::filesystem::path(settings.tracks).extension() == ".xml"; }
 
 cb::RecordedTraffic read(Settings const& settings) {
+  auto const origin = examples::origin_of(settings.origin, settings.map);
   cb::RecordedTraffic traffic;
   if (is_common_road(settings)) {
     traffic = cb::load_common_road(settings.tracks);
@@ -66,7 +68,7 @@ cb::RecordedTraffic read(Settings const& settings) {
                        : settings.format == "ngsim" ? cb::ngsim_tracks()
                                                     : cb::interaction_tracks();
     traffic = cb::load_tracks(settings.tracks, table);
-    traffic.map = examples::load_map(settings.map);
+    traffic.map = examples::load_map(settings.map, origin);
   }
   for (auto const& found : traffic.diagnostics)
     if (found.severity != cb::Severity::info) std::cerr << to_string(found) << "\n";
@@ -174,9 +176,9 @@ void replay(cb::RecordedTraffic const& traffic, Settings settings) {
   }
   outcome = run(recorded, settings, solves ? &traffic.problems.front() : nullptr, std::move(outcome), &film, world);
 
-  std::printf("  %.1f s from %.1f s of the recording, %zu road users, %zu of them driven by %s\n", world.time(),
-              recorded.begin, recorded.scenario.agents.size() + recorded.later.size(), replaced,
-              settings.driver.c_str());
+  auto const users = recorded.scenario.agents.size() + recorded.later.size();
+  std::printf("  %.1f s from %.1f s of the recording, %zu road user%s, %zu of them driven by %s\n", world.time(),
+              recorded.begin, users, users == 1 ? "" : "s", replaced + (solves ? 1 : 0), settings.driver.c_str());
   std::printf("  collision: %s\n", outcome.collision.empty() ? "none" : outcome.collision.c_str());
   double sum = 0.0;
   for (auto const& [id, displacement] : outcome.displacements.each()) sum += displacement.mean();
@@ -215,6 +217,13 @@ int main(int argc, char** argv) {
       ->required();
   program.add_option("--map", settings.map, "its map: Lanelet2 (.osm), OpenDRIVE (.xodr) or CommonRoad (.xml)")
       ->type_name("FILE");
+  program
+      .add_option(
+          "--origin", settings.origin,
+          "place on Earth where the tracks have (0, 0) [degrees], for a Lanelet2 map; default: the map's middle")
+      ->type_name("LAT,LON")
+      ->delimiter(',')
+      ->expected(2);
   program.add_option("--format", settings.format, "of the table: interaction, highd or ngsim")
       ->check(CLI::IsMember({"interaction", "highd", "ngsim"}))
       ->capture_default_str();
