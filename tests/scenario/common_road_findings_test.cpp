@@ -158,7 +158,8 @@ TEST_CASE("lanes are changed where the near line of their marking is dashed") {
         Case{"dashed_solid", true, false, true}, Case{"dashed_dashed", true, true, true},
         Case{"broad_solid", false, false, true}, Case{"no_marking", true, true, true},
         Case{"nonsense", true, true, false}}) {
-    CAPTURE(word);
+    std::string const marking = word;  // clang 14 captures no structured bindings
+    CAPTURE(marking);
     auto const traffic = read(
         "<lanelet id='1'>" + bound("leftBound", 0, 50, 0) + bound("rightBound", 0, 50, -3.5, word) +
         "<adjacentRight ref='2' drivingDir='same'/></lanelet><lanelet id='2'>" + bound("leftBound", 0, 50, -3.5, word) +
