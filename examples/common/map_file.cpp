@@ -5,13 +5,16 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/map/building/center_line_csv.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/scenario/dataset/common_road.hpp"
 
-std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file) {
+std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file,
+                                                       std::optional<cambium::map::Lanelet2Origin> const& origin) {
   std::filesystem::path const path(file);
   if (path.extension() == ".csv") {
     cambium::MapBuilder builder(path.stem().string());
@@ -23,7 +26,7 @@ std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file) 
       if (diagnostic.severity != cambium::Severity::info) std::cerr << to_string(diagnostic) << "\n";
   };
   if (path.extension() == ".osm") {
-    auto const loaded = cambium::load_lanelet2(file);
+    auto const loaded = cambium::map::load_lanelet2(file, origin);
     warn(loaded.diagnostics);
     return loaded.map;
   }
@@ -36,4 +39,15 @@ std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file) 
   auto const loaded = cambium::load_opendrive(file);
   warn(loaded.diagnostics);
   return loaded.map;
+}
+
+std::optional<cambium::map::Lanelet2Origin> examples::origin_of(std::vector<double> const& words,
+                                                                std::string const& file) {
+  if (words.empty()) return std::nullopt;
+  if (std::filesystem::path(file).extension() != ".osm")
+    throw cambium::Error("--origin", "only Lanelet2 maps have an origin",
+                         "leave it out, or give a map that ends in .osm");
+  cambium::map::Lanelet2Origin const origin{.latitude = words[0], .longitude = words[1]};
+  cambium::check_parameters(origin, "--origin");
+  return origin;
 }

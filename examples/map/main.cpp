@@ -15,6 +15,7 @@
 #include "cambium/viewer/svg_picture.hpp"
 
 #include "../common/command_line.hpp"
+#include "../common/map_file.hpp"
 #include "opened_map.hpp"
 #include "reports.hpp"
 #include "summary.hpp"
@@ -25,7 +26,7 @@ namespace {
 struct Settings {
   std::string file, picture, sketch, poses, nearest, out, links, junction;
   std::vector<std::string> route, reachable;
-  std::vector<double> part;
+  std::vector<double> part, origin;
   bool infer_links = false, in_space = false, network = false, strict = false;
 };
 
@@ -72,7 +73,8 @@ void draw(cambium::Map const& map, Settings const& settings) {
 int run(Settings const& settings) {
   namespace example = map_example;
   check_files(settings);
-  auto const opened = example::open_map(settings.file, {.infer_links = settings.infer_links});
+  auto const opened = example::open_map(settings.file, {.infer_links = settings.infer_links},
+                                        examples::origin_of(settings.origin, settings.file));
   auto const& map = *opened.map;
   std::cout << example::summary(opened, settings.file);
   for (auto const& diagnostic : opened.diagnostics) std::cout << "  " << to_string(diagnostic) << "\n";
@@ -104,6 +106,12 @@ void describe(CLI::App& program, Settings& settings) {
       ->type_name("XMIN YMIN XMAX YMAX")
       ->expected(4)
       ->needs(picture);
+  program
+      .add_option("--origin", settings.origin,
+                  "place on Earth where a Lanelet2 map has (0, 0) [degrees]; default: its middle")
+      ->type_name("LAT,LON")
+      ->delimiter(',')
+      ->expected(2);
   program.add_option("--sketch", settings.sketch, "draw a small picture with a close-up, for documents (.svg)")
       ->type_name("OUT");
   program.add_flag("--network", settings.network, "list gaps, kinks, dead ends and one-sided links between lanes");

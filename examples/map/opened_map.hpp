@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,12 +27,13 @@ struct OpenedMap {
 };
 
 /// Reads an OpenDRIVE file, a Lanelet2 map (.osm), a CommonRoad scenario (.xml), or a centre line from a table (.csv),
-/// which becomes a road of one lane. Throws `cambium::MapError`.
-inline OpenedMap open_map(std::string const& file, cambium::MapOptions const& options) {
+/// which becomes a road of one lane. `origin` is that of a Lanelet2 map. Throws `cambium::MapError`.
+inline OpenedMap open_map(std::string const& file, cambium::MapOptions const& options,
+                          std::optional<cambium::map::Lanelet2Origin> const& origin = {}) {
   OpenedMap opened;
   std::filesystem::path const path(file);
   if (path.extension() == ".osm") {
-    auto loaded = cambium::load_lanelet2(file, {}, options);
+    auto loaded = cambium::map::load_lanelet2(file, origin, options);
     return {.lanelets = "Lanelet2, " + std::to_string(loaded.lanes.size()) + " lanelets",
             .map = std::move(loaded.map),
             .diagnostics = std::move(loaded.diagnostics)};

@@ -20,7 +20,6 @@
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/write_file.hpp"
-#include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/metrics/displacement.hpp"
 #include "cambium/evaluation/metrics/per_agent.hpp"
@@ -50,12 +49,14 @@ struct Settings {
   std::uint64_t window = 0;
   std::optional<std::int64_t> ego;
   std::vector<std::int64_t> replaced;
+  std::vector<double> origin;
   bool lists = false, replaces_all = false;
 };
 
 bool is_common_road(Settings const& settings) { return std::filesystem::path(settings.tracks).extension() == ".xml"; }
 
 cb::RecordedTraffic read(Settings const& settings) {
+  auto const origin = examples::origin_of(settings.origin, settings.map);
   cb::RecordedTraffic traffic;
   if (is_common_road(settings)) {
     traffic = cb::load_common_road(settings.tracks);
@@ -67,7 +68,7 @@ cb::RecordedTraffic read(Settings const& settings) {
                        : settings.format == "ngsim" ? cb::ngsim_tracks()
                                                     : cb::interaction_tracks();
     traffic = cb::load_tracks(settings.tracks, table);
-    traffic.map = examples::load_map(settings.map);
+    traffic.map = examples::load_map(settings.map, origin);
   }
   for (auto const& found : traffic.diagnostics)
     if (found.severity != cb::Severity::info) std::cerr << to_string(found) << "\n";
@@ -115,9 +116,10 @@ Outcome run(cb::RecordedScenario<Sim> const& recorded, Settings const& settings,
   };
   if (world.roster().slot_of(ego)) outcome.ego.push_back(world.state(ego));
   std::size_t entered = 0;
-  auto const is_in_time = [&](cb::GoalState const& goal) {
+  auto const is_solved = [&] {
+    auto const at = world.situation(ego);
     double const time = recorded.begin + world.time();
-    return time >= goal.first_time - 1e-9 && time <= goal.last_time + 1e-9;
+    return std::ranges::any_of(problem->goals, [&](auto const& goal) { return goal.holds(at, time); });
   };
   while (outcome.collision.empty() && !outcome.solved && world.time() + settings.step <= recorded.duration() + 1e-9) {
     entered = recorded.enter(world, entered);
@@ -127,8 +129,7 @@ Outcome run(cb::RecordedScenario<Sim> const& recorded, Settings const& settings,
                           (is_valid(pair->second) ? to_string(pair->second) : std::string("an obstacle"));
     outcome.displacements.observe(world, settings.step);
     note();
-    if (problem != nullptr && outcome.collision.empty() && world.roster().slot_of(ego))
-      outcome.solved = cb::AtGoal{}(world, world.slot_of(ego)) && std::ranges::any_of(problem->goals, is_in_time);
+    if (problem != nullptr && outcome.collision.empty() && world.roster().slot_of(ego)) outcome.solved = is_solved();
   }
   return outcome;
 }
@@ -175,9 +176,9 @@ void replay(cb::RecordedTraffic const& traffic, Settings settings) {
   }
   outcome = run(recorded, settings, solves ? &traffic.problems.front() : nullptr, std::move(outcome), &film, world);
 
-  std::printf("  %.1f s from %.1f s of the recording, %zu road users, %zu of them driven by %s\n", world.time(),
-              recorded.begin, recorded.scenario.agents.size() + recorded.later.size(), replaced,
-              settings.driver.c_str());
+  auto const users = recorded.scenario.agents.size() + recorded.later.size();
+  std::printf("  %.1f s from %.1f s of the recording, %zu road user%s, %zu of them driven by %s\n", world.time(),
+              recorded.begin, users, users == 1 ? "" : "s", replaced + (solves ? 1 : 0), settings.driver.c_str());
   std::printf("  collision: %s\n", outcome.collision.empty() ? "none" : outcome.collision.c_str());
   double sum = 0.0;
   for (auto const& [id, displacement] : outcome.displacements.each()) sum += displacement.mean();
@@ -216,6 +217,13 @@ int main(int argc, char** argv) {
       ->required();
   program.add_option("--map", settings.map, "its map: Lanelet2 (.osm), OpenDRIVE (.xodr) or CommonRoad (.xml)")
       ->type_name("FILE");
+  program
+      .add_option(
+          "--origin", settings.origin,
+          "place on Earth where the tracks have (0, 0) [degrees], for a Lanelet2 map; default: the map's middle")
+      ->type_name("LAT,LON")
+      ->delimiter(',')
+      ->expected(2);
   program.add_option("--format", settings.format, "of the table: interaction, highd or ngsim")
       ->check(CLI::IsMember({"interaction", "highd", "ngsim"}))
       ->capture_default_str();

@@ -64,6 +64,22 @@ TEST_CASE("the map example reads Lanelet2 and CommonRoad files, draws them, and 
   CHECK(has(nothing.err, "nothing.osm"));
 }
 
+TEST_CASE("a Lanelet2 map lies where its origin says") {
+  Program const map("map");
+  browser::TemporaryFolder const folder;
+  auto const file = folder.file("a.osm");
+  std::ofstream(file) << R"(<osm version="0.6"><node id="1" lat="49.00003" lon="8.4"/><node id="2" lat="49.00003" )"
+                         R"(lon="8.401"/><node id="3" lat="49" lon="8.4"/><node id="4" lat="49" lon="8.401"/>)"
+                         R"(<way id="5"><nd ref="1"/><nd ref="2"/></way><way id="6"><nd ref="3"/><nd ref="4"/></way>)"
+                         R"(<relation id="7"><member type="way" ref="5" role="left"/><member type="way" ref="6" )"
+                         R"(role="right"/><tag k="type" v="lanelet"/><tag k="subtype" v="road"/></relation></osm>)";
+  auto const said = map.output({file, "--origin", "49.0,8.4"});
+  CHECK_MESSAGE(has(said, "x from 0 to 73."), said);
+  CHECK_MESSAGE(has(map.output({file}), "x from -36."), said);
+  CHECK(has(map.run({file, "--origin", "95,8.4"}).err, "latitude"));
+  CHECK(has(map.run({merging, "--origin", "49,8.4"}).err, "--origin: only Lanelet2 maps have an origin"));
+}
+
 TEST_CASE("poses, nearest lanes and links of real maps are those of the oracle") {
   Program const map("map");
   auto const folder = corpus::find("opendrive");

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -47,4 +48,34 @@ TEST_CASE("a planning problem is solved, and the solution written") {
   bool const solved = has(run.out, "is the solution of planning problem 1");
   CHECK(solved == std::filesystem::exists(out.file("s.xml")));
   CHECK((solved || has(run.out, "the goal was not reached in time")));
+}
+
+TEST_CASE("a planning problem is solved in one goal's area at that goal's time") {
+  Program const program("replay_dataset");
+  browser::TemporaryFolder const out;
+  auto const bound = [](std::string const& name, std::string const& y) {
+    return "<" + name + "><point><x>0</x><y>" + y + "</y></point><point><x>400</x><y>" + y + "</y></point></" + name +
+           ">";
+  };
+  auto const goal = [](std::string const& x, std::string const& from, std::string const& to) {
+    return "<goalState><position><rectangle><length>10</length><width>4</width><center><x>" + x +
+           "</x><y>0</y></center></rectangle></position><time><intervalStart>" + from +
+           "</intervalStart><intervalEnd>" + to + "</intervalEnd></time></goalState>";
+  };
+  std::ofstream(out.file("two_goals.xml"))
+      << "<commonRoad benchmarkID='ZAM_Test-1_1_T-1' commonRoadVersion='2020a' timeStepSize='0.1'><lanelet id='1'>" +
+             bound("leftBound", "2") + bound("rightBound", "-2") +
+             "</lanelet><planningProblem id='50'><initialState><position><point><x>5</x><y>0</y></point></position>"
+             "<orientation><exact>0</exact></orientation><time><exact>0</exact></time><velocity><exact>10</exact>"
+             "</velocity></initialState>" +
+             goal("60", "900", "990") + goal("380", "0", "500") + "</planningProblem></commonRoad>";
+  auto const run = program.run({"--tracks", out.file("two_goals.xml"), "--solution", out.file("s.xml"), "--driver",
+                                "idm", "--out", out.file("a")});
+  CAPTURE(run.out);
+  CHECK(has(run.out, "1 road user, 1 of them driven by idm"));
+  REQUIRE(has(run.out, "is the solution of planning problem 50"));
+  auto const solution = content_of(out.file("s.xml"));
+  auto const last = solution.rfind("<x>");
+  REQUIRE(last != std::string::npos);
+  CHECK(std::stod(solution.substr(last + 3)) > 374.0);
 }

@@ -4,13 +4,31 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "cambium/scenario/dataset/common_road.hpp"
 
 #include "../support/corpus.hpp"
 
 using namespace cambium;
+
+namespace {
+
+/// The ids of lanelets that findings name: the numbers behind "lanelet", "successor", "predecessor" and "neighbour".
+std::set<std::string> named_by(std::vector<Diagnostic> const& diagnostics) {
+  std::set<std::string> const kinds{"lanelet", "successor", "predecessor", "neighbour"};
+  std::set<std::string> ids;
+  for (auto const& found : diagnostics) {
+    std::istringstream words(found.ids + " " + found.sentence);
+    for (std::string before, word; words >> word; before = word)
+      if (kinds.contains(before)) ids.insert(word.substr(0, word.find_first_not_of("0123456789")));
+  }
+  return ids;
+}
+
+}  // namespace
 
 TEST_CASE("lanelets of CommonRoad follow each other and lie beside each other as counted, or a finding names them") {
   for (std::string const name : {"DEU_Test-1_1_T-1", "ZAM-Ramp-1_1-T-1", "ZAM_Over-1_1", "ZAM_Tjunction-1_42_T-1",
@@ -25,12 +43,7 @@ TEST_CASE("lanelets of CommonRoad follow each other and lie beside each other as
       names[lane] = std::to_string(id);
       if (auto const back = traffic.map->lane(lane).opposite; is_valid(back)) names[back] = "-" + names[lane];
     }
-    std::set<std::string> named;  // by findings
-    for (auto const& found : traffic.diagnostics)
-      for (auto const& row : corpus::table(*table))
-        if ((found.ids + found.sentence + " ").find(" " + row[0] + " ") != std::string::npos ||
-            found.ids == "lanelet " + row[0])
-          named.insert(row[0]);
+    auto const named = named_by(traffic.diagnostics);
     for (auto const& row : corpus::table(*table)) {
       CAPTURE(row[0]);
       auto const& lane = traffic.map->lane(traffic.lanes.at(std::stoll(row[0])));

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -242,6 +243,32 @@ TEST_CASE("an id that comes again after a long time is another road user") {
   CHECK(traffic.track(5).at(300.0).x == doctest::Approx(400.0));
   CHECK(text_of(traffic.diagnostics).find("from here on it is another one, track 5") != std::string::npos);
   CHECK(read_tracks(text, {.longest_gap = 1000.0}).tracks.size() == 2);
+}
+
+TEST_CASE("another road user with an id seen before has its own size and type") {
+  std::string const big = std::to_string(std::numeric_limits<std::int64_t>::max());
+  for (std::string const id : {std::string("3"), big}) {
+    std::string text = "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy,psi_rad,length,width\n" + id +
+                       ",1,100,car,0,0,5,0,0,4,2\n" + id + ",2,200,car,0.5,0,5,0,0,4,2\n";
+    text += id + ",3,9000,truck,10,0,5,0,0,12,2.5\n" + id + ",4,9100,truck,10.5,0,5,0,0,12,2.5\n";
+    auto const traffic = read_tracks(text);
+    REQUIRE(traffic.tracks.size() == 2);
+    CHECK(traffic.tracks[0].type == TrackType::car);
+    CHECK(traffic.tracks[0].length == 4.0);
+    CHECK(traffic.tracks[1].id == (id == "3" ? 4 : 0));
+    CHECK(traffic.tracks[1].type == TrackType::truck);
+    CHECK(traffic.tracks[1].length == 12.0);
+    CHECK(traffic.tracks[1].width == 2.5);
+    CHECK(text_of(traffic.diagnostics).find("size changes") == std::string::npos);
+  }
+  auto const pictures = read_tracks(
+      "frame,id,x,y,width,height,xVelocity,yVelocity\n1,1,10,5,4.5,2,25,0\n2,1,11,5,4.5,2,25,0\n"
+      "100,1,300,9,16,2.5,-25,0\n101,1,299,9,16,2.5,-25,0\n",
+      highd_tracks());
+  REQUIRE(pictures.tracks.size() == 2);
+  CHECK(pictures.tracks[0].type == TrackType::car);
+  CHECK(pictures.tracks[1].type == TrackType::truck);
+  CHECK(pictures.tracks[1].states[0].x == doctest::Approx(308.0));  // the middle of its own body
 }
 
 TEST_CASE("tracks that are written as a table read back the same") {

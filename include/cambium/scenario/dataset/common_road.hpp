@@ -17,11 +17,11 @@ namespace cambium {
 /// dynamic obstacles as tracks, planning problems. `file` names the text in messages.
 ///
 /// An interval or area where one value is wanted counts as its middle; of occupancy sets the middles of the shapes are
-/// taken. A rotated or shifted rectangle keeps its own middle and heading; circles and polygons of obstacles become the
-/// rectangle around them, circles of goals polygons of 32 corners. Each of these, what is left out (an obstacle without
-/// a state, a goal without a time) and unknown elements are diagnostics. Throws `Error` (file, line, what, remedy)
-/// where the text is no XML or no CommonRoad, or has no time step; and as `build_lanelet_map`. Linear in the text, but
-/// for the map.
+/// taken. A rotated or shifted rectangle keeps its own middle and heading; circles become polygons of 32 corners, those
+/// of obstacles with `Track::outline`. A light is green once a cycle, then yellow, else red. Lights for one direction
+/// hang over the ways behind the lanelet that turn so. Each of these, what is left out (an obstacle without a state, a
+/// goal without a time) and unknown elements are diagnostics. Throws `Error` (file, line, what, remedy) where the text
+/// is no XML or no CommonRoad, or has no time step; and as `build_lanelet_map`. Linear in the text, but for the map.
 [[nodiscard]] RecordedTraffic parse_common_road(std::string_view text, map::MapOptions const& options = {},
                                                 std::string const& file = "text");
 

@@ -95,16 +95,13 @@ class CommonRoadReader : private CommonRoadLanes {
     if (!is_body(*shape)) return warn(node, name + " is not up to 100 m long and wide; it was left out");
     track.states.push_back(*initial);
     if (!stands) read_motion(node, track);
-    if (stands && !is_rectangle(node)) track.outline = outline_from_middle(node, *shape);
-    if (!stands && !is_rectangle(node)) note(node, name + " became the rectangle around it");
+    if (!shape->is_rectangle) track.outline = outline_from_middle(node, *shape);
+    if (!stands && !track.outline.empty()) note(node, name + " drives as the rectangle around it");
     for (auto& state : track.states) shift(state, *shape);
     if (!ids_.insert(*id).second) return warn(node, name + " is there already; the second one was left out");
     traffic_.tracks.push_back(std::move(track));
   }
 
-  [[nodiscard]] static bool is_rectangle(Node node) {
-    return static_cast<bool>(xml::find_child(xml::find_child(node, "shape"), "rectangle"));
-  }
   /// The corners of a polygon or circle, whose own heading is 0; none, with a finding, where they are no outline.
   [[nodiscard]] std::vector<geometry::Point> outline_from_middle(Node node, CommonRoadShape const& shape) {
     auto outline = shape.outline;
@@ -173,7 +170,7 @@ class CommonRoadReader : private CommonRoadLanes {
                                .width = shape->width,
                                .stands = true,
                                .states = {State{0.0, shape->center.x(), shape->center.y(), shape->heading, 0.0}}});
-    if (!is_rectangle(node)) traffic_.tracks.back().outline = outline_from_middle(node, *shape);
+    if (!shape->is_rectangle) traffic_.tracks.back().outline = outline_from_middle(node, *shape);
   }
 
   void read_problem(Node node) {
@@ -193,6 +190,10 @@ class CommonRoadReader : private CommonRoadLanes {
   [[nodiscard]] std::optional<GoalState> goal_of(Node node) {
     GoalState goal;
     if (auto const time = interval(node, "time")) {
+      if (time->begin > time->end) {
+        warn(node, "its time ends before it begins; the goal was left out");
+        return std::nullopt;
+      }
       goal.first_time = time->begin * traffic_.time_step;
       goal.last_time = time->end * traffic_.time_step;
     } else {

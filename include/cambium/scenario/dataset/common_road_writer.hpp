@@ -18,8 +18,11 @@ struct CommonRoadHeader {
 /// static and dynamic obstacles, planning problems. Reading it gives the same lanelets, tracks and problems, bit by
 /// bit, but for times, which become whole multiples of `RecordedTraffic::time_step`, and for ids that an obstacle,
 /// lanelet or problem has already: CommonRoad wants each once, so the later one gets the next free number. Tracks that
-/// stand come first; they are parked cars or of the type other. Stop lines and light phases may differ by rounding.
-/// Throws `Error` as `check_recorded_traffic`, and where times are no multiples of the time step (to 1 % of it).
+/// stand come first; they are parked cars or of the type other. Stop lines may differ by a micrometre; a side of a
+/// goal's speed that has no limit gets one of 1000 m/s; entries, exits and slip lanes become driving lanes. Throws
+/// `Error` as `check_recorded_traffic`, where times are no multiples of the time step (to 1 % of it), and for what the
+/// format cannot say: a lanelet with signals at several places, with lanelets that it goes before, or of a type without
+/// a word; lanelets with one id; a goal without its first or last time.
 [[nodiscard]] std::string common_road_text(RecordedTraffic const& traffic, CommonRoadHeader const& header = {});
 
 }  // namespace cambium

@@ -41,7 +41,7 @@ class CommonRoadWriter {
     check_recorded_traffic(traffic_);
     if (!(traffic_.time_step > 0.0))
       throw Error(traffic_.name, "its time step is not above 0", "set RecordedTraffic::time_step");
-    for (auto const& lanelet : lanelets_) used_.insert(lanelet.id);
+    for (auto const& lanelet : lanelets_) check(lanelet);
     text_.element("commonRoad", [&] {
       attribute("timeStepSize", decimal_text(traffic_.time_step));
       attribute("commonRoadVersion", "2020a");
@@ -69,6 +69,30 @@ class CommonRoadWriter {
   using Id = std::int64_t;
   /// What a sign says: its number in the German catalogue, and its value.
   using Sign = std::pair<std::string, std::string>;
+
+  /// Throws `Error` for what the format cannot say of it.
+  void check(map::Lanelet const& lanelet) {
+    auto const where = traffic_.name + ": lanelet " + std::to_string(lanelet.id);
+    if (!used_.insert(lanelet.id).second) throw Error(where, "there is another one of that id", "give each its own");
+    if (!lanelet.goes_before.empty())
+      throw Error(where, "CommonRoad cannot say which lanelets it goes before", "clear goes_before, or give it a sign");
+    for (auto const& signal : lanelet.signals)
+      if (std::abs(signal.before_end - lanelet.signals.front().before_end) > 1e-3)
+        throw Error(where, "its signals are at several places, and CommonRoad has one stop line for a lanelet",
+                    "put them at one place, or divide the lanelet");
+    if (!is_drivable(lanelet.type) && word_of(lanelet) == "unknown" &&
+        common_road_users(lanelet.type).front() == "vehicle")
+      throw Error(where, "CommonRoad has no word for its type, \"" + std::string(to_string(lanelet.type)) + "\"",
+                  "give it another type, or leave it out");
+  }
+
+  /// The word of a lanelet's type. Walkways that are no crossings have none, but users.
+  [[nodiscard]] static std::string_view word_of(map::Lanelet const& lanelet) {
+    if (lanelet.type == map::LaneType::walking && !lanelet.in_junction) return "unknown";
+    for (auto const& [name, type] : common_road_lane_types)
+      if (lanelet.type == type && type != map::LaneType::rail) return name;
+    return "unknown";
+  }
 
   void attribute(char const* name, std::string_view value) { text_.attribute(name, value); }
   void leaf(char const* name, std::string_view value) {
@@ -150,12 +174,10 @@ class CommonRoadWriter {
       if (lanelet.left_neighbor) write_neighbor("adjacentLeft", *lanelet.left_neighbor);
       if (lanelet.right_neighbor) write_neighbor("adjacentRight", *lanelet.right_neighbor);
       write_stop_line(lanelet);
-      std::string_view word = "unknown";
-      for (auto const& [name, type] : common_road_lane_types)
-        if (lanelet.type == type) word = name;
-      leaf("laneletType", word);
+      leaf("laneletType", word_of(lanelet));
       if (lanelet.in_junction) leaf("laneletType", "intersection");
-      leaf(lanelet.both_directions ? "userBidirectional" : "userOneWay", "vehicle");
+      for (auto const user : common_road_users(lanelet.type))
+        leaf(lanelet.both_directions ? "userBidirectional" : "userOneWay", user);
       if (lanelet.speed_limit) reference("trafficSignRef", signs_.at({"274", decimal_text(*lanelet.speed_limit)}));
       for (auto const& signal : lanelet.signals)
         if (signal.kind != map::SignalKind::light) reference("trafficSignRef", signs_.at(sign_of(signal.kind)));
@@ -216,6 +238,7 @@ class CommonRoadWriter {
       attribute("id", std::to_string(id));
       text_.element("cycle", [&] {
         auto const phase = [&](std::string const& duration, char const* color) {
+          if (duration == "0") return;
           text_.element("cycleElement", [&] {
             leaf("duration", duration);
             leaf("color", color);
@@ -303,11 +326,15 @@ class CommonRoadWriter {
     auto const& limits = goal.limits;
     if (limits.heading_to - limits.heading_from < 2.0 * geometry::pi)
       interval("orientation", decimal_text(limits.heading_from), decimal_text(limits.heading_to));
-    if (std::isfinite(goal.first_time) && std::isfinite(goal.last_time))
-      interval("time", steps(goal.first_time, of), steps(goal.last_time, of));
-    if (std::isfinite(limits.lowest_speed) || std::isfinite(limits.highest_speed))
-      interval("velocity", decimal_text(std::max(limits.lowest_speed, -1000.0)),
-               decimal_text(std::min(limits.highest_speed, 1000.0)));
+    if (!std::isfinite(goal.first_time) || !std::isfinite(goal.last_time))
+      throw Error(traffic_.name + ": " + of, "a goal has no first or no last time, which CommonRoad wants",
+                  "set GoalState::first_time and last_time");
+    interval("time", steps(goal.first_time, of), steps(goal.last_time, of));
+    constexpr double fast = 1000.0;  // [m/s] where there is no limit
+    bool const is_low = std::isfinite(limits.lowest_speed), is_high = std::isfinite(limits.highest_speed);
+    if (is_low || is_high)
+      interval("velocity", decimal_text(is_low ? limits.lowest_speed : std::min(-fast, limits.highest_speed - fast)),
+               decimal_text(is_high ? limits.highest_speed : std::max(fast, limits.lowest_speed + fast)));
   }
 
   RecordedTraffic const& traffic_;

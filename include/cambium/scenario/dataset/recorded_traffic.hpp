@@ -44,7 +44,8 @@ struct Track {
   double width = 1.8;           ///< [m]
   bool stands = false;          ///< an obstacle that stands for good, with one state
   std::vector<State> states{};  ///< of the middle, by rising time; speeds below 0 are backwards
-  /// The outline of one that stands, from its middle, along and left of its heading [m]; empty: a rectangle.
+  /// The outline, from its middle, along and left of its heading [m]; empty: a rectangle. In worlds those that move are
+  /// the rectangle of `length` and `width` all the same.
   std::vector<geometry::Point> outline{};
 
   [[nodiscard]] double begin() const { return states.front().time; }  ///< [s]

@@ -92,12 +92,12 @@ class TrackTableReader {
   struct Row {
     int line = 0;
     State state{};
-    double vx = 0.0, vy = 0.0;
+    double vx = 0.0, vy = 0.0, length = 0.0, width = 0.0;
+    TrackType type = TrackType::car;
   };
   struct Read {
     Track track;
     std::vector<Row> rows;
-    bool size_changes = false;
   };
 
   [[noreturn]] void fail(std::string const& what, std::string const& remedy) const { fail(line_, what, remedy); }
@@ -176,20 +176,14 @@ class TrackTableReader {
     if (is_new) {
       read_.emplace_back();
       read_.back().track.id = key;
-      if (place_[type]) read_.back().track.type = track_type_of(cell(cells, type));
     }
-    auto& read = read_[at->second];
     double const unit = table_.length_unit;
-    auto const typical = typical_size(read.track.type);
-    auto const long_ = number(cells, length), wide = number(cells, width);
-    double const length_m = long_ ? *long_ * unit : typical.first, width_m = wide ? *wide * unit : typical.second;
-    if (read.rows.empty()) {
-      read.track.length = length_m;
-      read.track.width = width_m;
-    } else if (std::abs(length_m - read.track.length) + std::abs(width_m - read.track.width) > 0.1) {
-      read.size_changes = true;
-    }
     Row row{line_};
+    if (place_[type]) row.type = track_type_of(cell(cells, type));
+    auto const typical = typical_size(row.type);
+    auto const long_ = number(cells, length), wide = number(cells, width);
+    row.length = long_ ? *long_ * unit : typical.first;
+    row.width = wide ? *wide * unit : typical.second;
     row.state.time = *number(cells, time) * table_.time_unit;
     auto const place = turned(*number(cells, x) * unit, *number(cells, y) * unit);
     row.state.x = place.x();
@@ -203,7 +197,7 @@ class TrackTableReader {
       row.state.speed = std::hypot(row.vx, row.vy);
     }
     if (auto const fast = number(cells, speed)) row.state.speed = *fast * unit;
-    read.rows.push_back(row);
+    read_[at->second].rows.push_back(row);
   }
 
   [[nodiscard]] bool has_velocity() const { return place_[vx] && place_[vy]; }
@@ -211,8 +205,10 @@ class TrackTableReader {
 
   /// Sorts the rows by time; whoever is not recorded for long and comes again is somebody else.
   void part_at_gaps() {
-    std::int64_t unused = 0;
-    for (auto const& read : read_) unused = std::max(unused, read.track.id + 1);
+    std::int64_t unused = 0;  // above all ids, where these leave room for it
+    constexpr auto highest = std::numeric_limits<std::int64_t>::max() / 2;
+    for (auto const& read : read_)
+      if (read.track.id < highest) unused = std::max(unused, read.track.id + 1);
     for (std::size_t i = 0; i < read_.size(); ++i) {  // those that are added, too
       stable_sort(read_[i].rows, [](Row const& row) { return row.state.time; });
       auto const& rows = read_[i].rows;
@@ -222,7 +218,7 @@ class TrackTableReader {
       report(Severity::warning, rows[k].line, read_[i].track,
              "nothing is recorded for " + rounded_text(rows[k].state.time - rows[k - 1].state.time) +
                  " s before this row; from here on it is another one, track " + std::to_string(unused));
-      Read behind{read_[i].track, {rows.begin() + static_cast<std::ptrdiff_t>(k), rows.end()}, read_[i].size_changes};
+      Read behind{read_[i].track, {rows.begin() + static_cast<std::ptrdiff_t>(k), rows.end()}};
       behind.track.id = unused++;
       read_[i].rows.resize(k);
       read_.push_back(std::move(behind));
@@ -242,15 +238,30 @@ class TrackTableReader {
              "leave one of them out, or give the road users ids of their own");
       step = std::min(step, passed);
     }
+    take_body(read);
     if (!place_[type] && place_[length] && read.track.length > 7.0) read.track.type = TrackType::truck;
     move_to_middle(read);
     if (!place_[heading]) set_headings(rows);
     move_front_to_middle(read);
     set_speeds(read);
-    if (read.size_changes) report(Severity::info, 0, read.track, "its size changes; that of its first row counts");
     for (auto const& row : rows) read.track.states.push_back(row.state);
     traffic_.tracks.push_back(read.track);
     return step;
+  }
+
+  /// The size and type of its first row.
+  void take_body(Read& read) {
+    auto const& first = read.rows.front();
+    read.track.length = first.length;
+    read.track.width = first.width;
+    read.track.type = first.type;
+    bool size_changes = false, type_changes = false;
+    for (auto const& row : read.rows) {
+      size_changes = size_changes || std::abs(row.length - first.length) + std::abs(row.width - first.width) > 0.1;
+      type_changes = type_changes || row.type != first.type;
+    }
+    if (size_changes) report(Severity::info, 0, read.track, "its size changes; that of its first row counts");
+    if (type_changes) report(Severity::info, 0, read.track, "its type changes; that of its first row counts");
   }
 
   /// From the corner of a bounding box to the middle; its sides are those of the table.

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -8,107 +12,97 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/geometry/angle.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/lanes/signal_codes.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/xml.hpp"
-#include "cambium/scenario/dataset/detail/common_road_values.hpp"
+#include "cambium/scenario/dataset/detail/common_road_signals.hpp"
 
 namespace cambium::detail {
 
 /// The words of lanelet types that are more than "driving".
 inline constexpr std::pair<std::string_view, map::LaneType> common_road_lane_types[] = {
-    {"shoulder", map::LaneType::shoulder},  {"sidewalk", map::LaneType::sidewalk},
-    {"busLane", map::LaneType::bus},        {"bicycleLane", map::LaneType::biking},
-    {"accessRamp", map::LaneType::on_ramp}, {"exitRamp", map::LaneType::off_ramp},
-    {"crosswalk", map::LaneType::walking}};
+    {"shoulder", map::LaneType::shoulder},
+    {"sidewalk", map::LaneType::sidewalk},
+    {"busLane", map::LaneType::bus},
+    {"bicycleLane", map::LaneType::biking},
+    {"accessRamp", map::LaneType::on_ramp},
+    {"exitRamp", map::LaneType::off_ramp},
+    {"crosswalk", map::LaneType::walking},
+    {"parking", map::LaneType::parking},
+    {"border", map::LaneType::border},
+    {"restricted", map::LaneType::restricted},
+    {"railway", map::LaneType::rail},
+    {"restricted_area", map::LaneType::restricted},
+    {"restrictedArea", map::LaneType::restricted}};
+/// Those that are "driving".
+inline constexpr std::string_view common_road_driving[] = {
+    "urban", "country", "highway", "driveWay", "mainCarriageWay", "interstate", "busStop", "intersection", "unknown"};
 
-/// What a sign says by the catalogue of a benchmark's country, "DEU_Test-1_1" or "C-USA_US101-1_1_T-1"; by the American
-/// one where the country is none on Earth, as Zamunda (ZAM) is.
-[[nodiscard]] inline map::SignalCode const* common_road_sign(std::string_view benchmark, std::string_view id) {
-  if (benchmark.starts_with("C-")) benchmark.remove_prefix(2);
-  auto const country = benchmark.substr(0, 3);
-  for (auto const& [word, code] : {std::pair{"USA", "us"}, {"ZAM", "us"}, {"ESP", "es"}, {"AUS", "au"}, {"CHN", "cn"}})
-    if (word == country) return map::find_signal_code(code, id, "");
-  return map::find_signal_code("", id, "");
+/// The words of those that lanelets of a type are for.
+[[nodiscard]] inline std::vector<std::string_view> common_road_users(map::LaneType type) {
+  switch (type) {
+    case map::LaneType::biking:
+      return {"bicycle"};
+    case map::LaneType::walking:
+    case map::LaneType::sidewalk:
+      return {"pedestrian"};
+    case map::LaneType::shared:
+      return {"bicycle", "pedestrian"};
+    case map::LaneType::bus:
+      return {"bus"};
+    case map::LaneType::taxi:
+      return {"taxi"};
+    case map::LaneType::rail:
+      return {"train"};
+    default:
+      return {"vehicle"};
+  }
 }
 
+/// The words of line markings, and whether they permit a change from their left and from their right, as seen along
+/// them.
+struct CommonRoadMarking {
+  std::string_view word;
+  bool from_left = true, from_right = true;
+};
+inline constexpr CommonRoadMarking common_road_markings[] = {
+    {"dashed", true, true},         {"solid", false, false},       {"broad_dashed", true, true},
+    {"broad_solid", false, false},  {"dashed_dashed", true, true}, {"solid_solid", false, false},
+    {"solid_dashed", false, true},  {"dashed_solid", true, false}, {"curb", false, false},
+    {"lowered_curb", false, false}, {"no_marking", true, true},    {"unknown", true, true}};
+
 /// Reads the lanelets of a CommonRoad file with their signs, lights and intersections, and makes the map of them.
-class CommonRoadLanes : protected CommonRoadValues {
+class CommonRoadLanes : protected CommonRoadSignals {
  protected:
-  using CommonRoadValues::CommonRoadValues;
+  using CommonRoadSignals::CommonRoadSignals;
 
   /// Fills lanelets, map, lanes and lights of the recording.
   void read_lanes(Node root, map::MapOptions const& options) {
-    xml::for_each_child(root, [&](Node node, std::string_view name) { read_rule(node, name); });
+    xml::for_each_child(root, [&](Node node, std::string_view name) { read_sign_or_light(node, name); });
     xml::for_each_child(root, "lanelet", [&](Node node) { read_lanelet(node); });
     xml::for_each_child(root, "intersection", [&](Node node) { read_intersection(node); });
+    for (auto const& pending : arrows_) hang_arrow(pending);
+    report_one_sided();
     if (!traffic_.lanelets.empty()) make_map(options);
   }
 
  private:
-  struct Sign {
-    std::optional<map::SignalKind> kind{};
-    std::optional<double> speed{};  ///< limit [m/s]
+  /// A light for some of the ways behind a lanelet.
+  struct PendingArrow {
+    Node node;
+    std::size_t lanelet = 0;
+    Id light = 0;
+    double before_end = 0.0;
   };
-
-  void read_rule(Node node, std::string_view name) {
-    if (name == "trafficSign") read_sign(node);
-    if (name == "trafficLight") read_light(node);
-  }
-
-  void read_sign(Node node) {
-    auto const id = id_of(node);
-    if (!id) return;
-    Sign sign;
-    xml::for_each_child(node, "trafficSignElement", [&](Node element) {
-      auto const word = text_of(xml::find_child(element, "trafficSignID"));
-      auto const* const code = common_road_sign(traffic_.name, word);
-      if (code == nullptr) return warn(element, "its sign " + std::string(word) + " is not known; it was left out");
-      if (auto const kind = map::kind_of(code->meaning); kind && kind != map::SignalKind::light) sign.kind = kind;
-      if (code->meaning != map::SignalMeaning::speed_limit) return;
-      auto const limit = number(element, "additionalValue");
-      if (limit && *limit > 0.0 && *limit < 300.0) sign.speed = limit;
-    });
-    signs_.emplace(*id, sign);
-  }
-
-  /// The phases of a light: from the end of the red one. Several greens become the first.
-  void read_light(Node node) {
-    auto const id = id_of(node);
-    if (!id) return;
-    map::LightPlan plan;
-    double offset = 0.0, at = 0.0, yellow = 0.0;
-    std::optional<Interval> green;
-    auto cycle = xml::find_child(node, "cycle");
-    xml::for_each_child(cycle, [&](Node element, std::string_view name) {
-      if (name == "timeOffset") offset = xml::parse_number<double>(text_of(element)).value_or(0.0);
-      if (name != "cycleElement") return;
-      auto const steps = number(element, "duration");
-      if (!steps || !(*steps >= 0.0 && *steps <= 1e6)) return;
-      double const lasts = *steps * traffic_.time_step;
-      auto const color = text_of(xml::find_child(element, "color"));
-      if (color == "green" && green) note(element, "a second green phase was left out");
-      if (color == "green" && !green) green = Interval{at, at + lasts};
-      if (color == "yellow" && green && at == green->end) yellow = lasts;
-      at += lasts;
-    });
-    if (text_of(xml::find_child(node, "active")) != "false" && at > 0.0 && green) {
-      plan = {.cycle = at, .green_begin = green->begin, .green_end = green->end, .yellow = yellow};
-      plan.green_begin += offset * traffic_.time_step;
-      plan.green_end += offset * traffic_.time_step;
-    }
-    if (!plan.is_possible()) {
-      warn(node, "its cycle is impossible; the light is off");
-      plan = {};
-    }
-    lights_.emplace(*id, plan);
-  }
 
   void read_lanelet(Node node) {
     auto const id = id_of(node);
     if (!id) return;
+    if (!places_.try_emplace(*id, traffic_.lanelets.size()).second)
+      return warn(node, "lanelet " + std::to_string(*id) + " is there already; the second one was left out");
     map::Lanelet lanelet{.id = *id};
     lanelet.line = context_.line(node);
     bool good = true;
@@ -124,14 +118,56 @@ class CommonRoadLanes : protected CommonRoadValues {
           heights.push_back(*height);
       });
       if (heights.size() != points.size()) heights.clear();
-      auto const marking = text_of(xml::find_child(bound, "lineMarking"));
-      (is_left ? lanelet.may_change_left : lanelet.may_change_right) =
-          marking != "solid" && marking != "broad_solid" && marking != "curb";
+      if (auto const marking = xml::find_child(bound, "lineMarking"))
+        (is_left ? lanelet.may_change_left : lanelet.may_change_right) = permits_change(marking, is_left);
     }
-    if (!good) return warn(node, "lanelet " + std::to_string(*id) + " was left out, see the previous finding");
+    if (!good) {
+      places_.erase(*id);
+      return warn(node, "lanelet " + std::to_string(*id) + " was left out, see the previous finding");
+    }
+    users_.clear();
+    both_ways_.clear();
     xml::for_each_child(node, [&](Node child, std::string_view name) { read_lanelet_part(child, name, lanelet); });
+    if (lanelet.type == map::LaneType::driving) lanelet.type = type_for_users();
+    lanelet.both_directions = both_ways_.contains("vehicle") || both_ways_.contains("car");
+    for (auto const user : common_road_users(lanelet.type))
+      lanelet.both_directions = lanelet.both_directions || both_ways_.contains(std::string(user));
     if (auto const line = xml::find_child(node, "stopLine")) read_stop_line(line, lanelet);
     traffic_.lanelets.push_back(std::move(lanelet));
+  }
+
+  [[nodiscard]] bool permits_change(Node marking, bool is_left) {
+    for (auto const& known : common_road_markings)
+      if (known.word == text_of(marking)) return is_left ? known.from_right : known.from_left;
+    warn(marking, "\"" + std::string(text_of(marking)) + "\" is no marking that is known; it permits lane changes");
+    return true;
+  }
+
+  /// What a lanelet is for by its users, where these are none of the usual traffic.
+  [[nodiscard]] map::LaneType type_for_users() const {
+    bool const bikes = users_.contains("bicycle"), walks = users_.contains("pedestrian");
+    if (users_.empty() || users_.size() > (bikes ? 1u : 0u) + (walks ? 1u : 0u)) {
+      if (users_.size() != 1) return map::LaneType::driving;
+      auto const& user = *users_.begin();
+      return user == "bus"     ? map::LaneType::bus
+             : user == "taxi"  ? map::LaneType::taxi
+             : user == "train" ? map::LaneType::rail
+                               : map::LaneType::driving;
+    }
+    return bikes && walks ? map::LaneType::shared : bikes ? map::LaneType::biking : map::LaneType::walking;
+  }
+
+  void read_type(Node node, map::Lanelet& lanelet) {
+    auto const text = text_of(node);
+    lanelet.in_junction = lanelet.in_junction || text == "intersection";
+    for (auto const& [word, type] : common_road_lane_types)
+      if (word == text) {
+        lanelet.type = type;
+        return;
+      }
+    if (std::find(std::begin(common_road_driving), std::end(common_road_driving), text) ==
+        std::end(common_road_driving))
+      warn(node, "the type \"" + std::string(text) + "\" is not known; the lanelet counts as one for driving");
   }
 
   void read_lanelet_part(Node node, std::string_view name, map::Lanelet& lanelet) {
@@ -143,14 +179,16 @@ class CommonRoadLanes : protected CommonRoadValues {
       if (!ref || std::string_view(node.attribute("drivingDir").value()) == "opposite") return;
       (name == "adjacentLeft" ? lanelet.left_neighbor : lanelet.right_neighbor) = ref;
     } else if (name == "laneletType") {
-      for (auto const& [word, type] : common_road_lane_types)
-        if (word == text_of(node)) lanelet.type = type;
-      lanelet.in_junction = lanelet.in_junction || text_of(node) == "intersection";
+      read_type(node, lanelet);
     } else if (name == "speedLimit") {
       auto const limit = xml::parse_number<double>(text_of(node));
-      if (limit && *limit > 0.0 && *limit < 1000.0) lanelet.speed_limit = limit;
-    } else if (name == "userBidirectional") {
-      lanelet.both_directions = lanelet.both_directions || text_of(node) == "vehicle" || text_of(node) == "car";
+      if (limit && *limit > 0.0 && *limit < 1000.0)
+        lanelet.speed_limit = limit;
+      else
+        warn(node, "\"" + std::string(text_of(node)) + "\" is no speed between 0 and 1000 m/s; it was left out");
+    } else if (name == "userOneWay" || name == "userBidirectional") {
+      users_.emplace(text_of(node));
+      if (name == "userBidirectional") both_ways_.emplace(text_of(node));
     } else if (name == "trafficSignRef" || name == "trafficLightRef") {
       if (auto const ref = reference(node)) add_signal(node, *ref, 0.0, lanelet);
     }
@@ -162,19 +200,26 @@ class CommonRoadLanes : protected CommonRoadValues {
     xml::for_each_child(node, "point", [&](Node child) {
       if (auto const p = point(child)) ends.push_back(*p);
     });
+    if (ends.size() == 1 || ends.size() > 2)
+      warn(node, "it has " + std::to_string(ends.size()) + " points, not two; it lies at the end of lanelet " +
+                     std::to_string(lanelet.id));
     double const before = ends.size() == 2 ? map::distance_before_end(lanelet, 0.5 * (ends[0] + ends[1])) : 0.0;
     xml::for_each_child(node, [&](Node child, std::string_view name) {
       if (name != "trafficSignRef" && name != "trafficLightRef") return;
       if (auto const ref = reference(child)) add_signal(child, *ref, before, lanelet);
     });
     for (auto& signal : lanelet.signals) signal.before_end = before;
+    for (auto& arrow : arrows_)
+      if (arrow.lanelet == traffic_.lanelets.size()) arrow.before_end = before;
   }
 
   void add_signal(Node node, Id ref, double before, map::Lanelet& lanelet) {
     if (auto const sign = signs_.find(ref); sign != signs_.end()) {
       if (sign->second.speed) lanelet.speed_limit = sign->second.speed;
       if (sign->second.kind) add_once(lanelet, {*sign->second.kind, before, {}});
-    } else if (lights_.contains(ref)) {
+    } else if (auto const light = lights_.find(ref); light != lights_.end()) {
+      if (light->second.arrow != map::Arrow::none)
+        return arrows_.push_back({node, traffic_.lanelets.size(), ref, before});
       add_once(lanelet, {map::SignalKind::light, before, std::to_string(ref)});
     } else {
       warn(node, "sign or light " + std::to_string(ref) + " is not there");
@@ -186,17 +231,102 @@ class CommonRoadLanes : protected CommonRoadValues {
     lanelet.signals.push_back(signal);
   }
 
-  /// The ways through an intersection lie in it.
+  /// The ways through an intersection lie in it; each turns as it says.
   void read_intersection(Node node) {
     std::set<Id> inside;
     xml::for_each_child(node, "incoming", [&](Node incoming) {
       xml::for_each_child(incoming, [&](Node child, std::string_view name) {
         if (!name.starts_with("successors")) return;
-        if (auto const ref = reference(child)) inside.insert(*ref);
+        auto const ref = reference(child);
+        if (!ref) return;
+        inside.insert(*ref);
+        xml::for_each_child(incoming, "incomingLanelet", [&](Node from) {
+          auto const lanelet = reference(from);
+          if (!lanelet) return;
+          auto& turn = turns_[{*lanelet, *ref}];
+          if (name == "successorsLeft") turn = turn | map::Arrow::left;
+          if (name == "successorsStraight") turn = turn | map::Arrow::straight;
+          if (name == "successorsRight") turn = turn | map::Arrow::right;
+        });
       });
     });
     for (auto& lanelet : traffic_.lanelets)
       if (inside.contains(lanelet.id)) lanelet.in_junction = true;
+  }
+
+  /// An arrow light is for the ways behind the lanelet that turn so, as intersections say, else as their bounds do.
+  void hang_arrow(PendingArrow const& pending) {
+    auto& from = traffic_.lanelets[pending.lanelet];
+    auto const arrow = lights_.at(pending.light).arrow;
+    auto const name = "light " + std::to_string(pending.light);
+    std::vector<std::size_t> ways;
+    std::size_t followers = 0;
+    bool guessed = false;
+    for (std::size_t i = 0; i < traffic_.lanelets.size(); ++i) {
+      auto const& to = traffic_.lanelets[i];
+      if (!names(from.successors, to.id) && !names(to.predecessors, from.id)) continue;
+      ++followers;
+      auto const known = turns_.find({from.id, to.id});
+      guessed = guessed || known == turns_.end();
+      if (has(arrow, known != turns_.end() ? known->second : turn_of(to))) ways.push_back(i);
+    }
+    if (ways.empty())
+      warn(pending.node, "no way behind lanelet " + std::to_string(from.id) + " has the direction of " + name +
+                             "; it counts for the whole lanelet");
+    else if (guessed)
+      note(pending.node, "no intersection says how all ways behind lanelet " + std::to_string(from.id) + " turn; for " +
+                             name + " their bounds count");
+    if (ways.empty() || ways.size() == followers)
+      return add_once(from, {map::SignalKind::light, pending.before_end, std::to_string(pending.light)});
+    for (auto const i : ways) {
+      auto& way = traffic_.lanelets[i];
+      if (way.left.empty() || way.right.empty()) continue;
+      double const length = map::distance_before_end(way, 0.5 * (way.left.front() + way.right.front()));
+      add_once(way, {map::SignalKind::light, length, std::to_string(pending.light)});
+    }
+  }
+
+  [[nodiscard]] static bool names(std::vector<Id> const& ids, Id id) {
+    return std::find(ids.begin(), ids.end(), id) != ids.end();
+  }
+
+  [[nodiscard]] static map::Arrow turn_of(map::Lanelet const& lanelet) {
+    auto const& line = lanelet.left;
+    if (line.size() < 2) return map::Arrow::straight;
+    auto const heading = [](geometry::Point const& a, geometry::Point const& b) {
+      return std::atan2(b.y() - a.y(), b.x() - a.x());
+    };
+    double const turn =
+        geometry::angle_difference(heading(line[line.size() - 2], line.back()), heading(line[0], line[1]));
+    return turn > 0.5 ? map::Arrow::left : turn < -0.5 ? map::Arrow::right : map::Arrow::straight;
+  }
+
+  /// Links and neighbours that only one of both lanelets names.
+  void report_one_sided() {
+    auto const report = [&](map::Lanelet const& by, Id other, std::string_view as, std::string_view back) {
+      traffic_.diagnostics.push_back({Severity::info, context_.file(), by.line, "lanelet",
+                                      "lanelet " + std::to_string(by.id),
+                                      "it names lanelet " + std::to_string(other) + " as its " + std::string(as) +
+                                          ", which does not name it as its " + std::string(back)});
+    };
+    auto const other = [&](Id id) {
+      auto const at = places_.find(id);
+      return at == places_.end() ? nullptr : &traffic_.lanelets[at->second];
+    };
+    for (auto const& lanelet : traffic_.lanelets) {
+      for (auto const id : lanelet.successors)
+        if (auto const* const to = other(id); to != nullptr && !names(to->predecessors, lanelet.id))
+          report(lanelet, id, "successor", "predecessor");
+      for (auto const id : lanelet.predecessors)
+        if (auto const* const from = other(id); from != nullptr && !names(from->successors, lanelet.id))
+          report(lanelet, id, "predecessor", "successor");
+      if (auto const id = lanelet.left_neighbor)
+        if (auto const* const left = other(*id); left != nullptr && left->right_neighbor != lanelet.id)
+          report(lanelet, *id, "left neighbour", "right one");
+      if (auto const id = lanelet.right_neighbor)
+        if (auto const* const right = other(*id); right != nullptr && right->left_neighbor != lanelet.id)
+          report(lanelet, *id, "right neighbour", "left one");
+    }
   }
 
   void make_map(map::MapOptions const& options) {
@@ -207,12 +337,14 @@ class CommonRoadLanes : protected CommonRoadValues {
     for (auto const& light : traffic_.map->lights()) {
       auto const id = xml::parse_number<Id>(light.name);
       auto const plan = id ? lights_.find(*id) : lights_.end();
-      traffic_.lights.push_back(plan == lights_.end() ? map::LightPlan{} : plan->second);
+      traffic_.lights.push_back(plan == lights_.end() ? map::LightPlan{} : plan->second.plan);
     }
   }
 
-  std::map<Id, Sign> signs_;
-  std::map<Id, map::LightPlan> lights_;
+  std::map<Id, std::size_t> places_;         ///< of the lanelets
+  std::set<std::string> users_, both_ways_;  ///< of the lanelet that is being read
+  std::vector<PendingArrow> arrows_;
+  std::map<std::pair<Id, Id>, map::Arrow> turns_;  ///< of a lanelet and one behind it
 };
 
 }  // namespace cambium::detail

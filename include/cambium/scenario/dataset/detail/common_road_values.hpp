@@ -25,6 +25,7 @@ struct CommonRoadShape {
   geometry::Point center{};
   double heading = 0.0, length = 0.0, width = 0.0;
   std::vector<geometry::Point> outline{};
+  bool is_rectangle = false;
 };
 
 /// What all parts of a CommonRoad file consist of: numbers, intervals, places, shapes and states. What is odd goes to
@@ -103,14 +104,17 @@ class CommonRoadValues {
     if (!parent) return std::nullopt;
     std::optional<CommonRoadShape> found;
     bool second = false;
+    std::string first;
     xml::for_each_child(parent, [&](Node node, std::string_view name) {
       if (name != "rectangle" && name != "circle" && name != "polygon") return;
-      if (found)
+      if (found) {
         second = true;
-      else
-        found = name == "rectangle" ? rectangle(node) : name == "circle" ? circle(node) : polygon(node);
+        return;
+      }
+      first = name;
+      found = name == "rectangle" ? rectangle(node) : name == "circle" ? circle(node) : polygon(node);
     });
-    if (second) note(parent, "it has several shapes; the first one was taken");
+    if (second) note(parent, "it has several shapes; the first one, a " + first + ", was taken");
     return found;
   }
 
@@ -119,7 +123,7 @@ class CommonRoadValues {
     return child ? point(child).value_or(geometry::Point{}) : geometry::Point{};
   }
 
-  /// To a nanometre: cosines of right angles are not 0.
+  /// To a nanometre: cosines of right angles are not 0, and sums have rounding errors.
   [[nodiscard]] static geometry::Point rounded(geometry::Point const& p) {
     return {std::round(p.x() * 1e9) / 1e9, std::round(p.y() * 1e9) / 1e9};
   }
@@ -127,7 +131,7 @@ class CommonRoadValues {
   [[nodiscard]] std::optional<CommonRoadShape> rectangle(Node node) {
     auto const length = number(node, "length"), width = number(node, "width");
     if (!length || !width || !(*length > 0.0 && *width > 0.0)) return std::nullopt;
-    CommonRoadShape shape{center(node), 0.0, *length, *width, {}};
+    CommonRoadShape shape{center(node), 0.0, *length, *width, {}, true};
     if (xml::find_child(node, "orientation")) shape.heading = number(node, "orientation").value_or(0.0);
     double const c = std::cos(shape.heading), s = std::sin(shape.heading);
     for (auto const& [a, b] : {std::pair{0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}}) {
@@ -140,7 +144,7 @@ class CommonRoadValues {
   [[nodiscard]] std::optional<CommonRoadShape> circle(Node node) {
     auto const radius = number(node, "radius");
     if (!radius || !(*radius > 0.0)) return std::nullopt;
-    CommonRoadShape shape{center(node), 0.0, 2.0 * *radius, 2.0 * *radius, {}};
+    CommonRoadShape shape{center(node), 0.0, 2.0 * *radius, 2.0 * *radius, {}, false};
     constexpr int corners = 32;
     for (int k = 0; k < corners; ++k) {
       double const angle = 2.0 * geometry::pi * k / corners;
@@ -162,9 +166,10 @@ class CommonRoadValues {
       box.add(p->x(), p->y());
     });
     if (!good || shape.outline.size() < 3) return std::nullopt;
-    shape.center = box.center();
-    shape.length = box.max_x - box.min_x;
-    shape.width = box.max_y - box.min_y;
+    shape.center = rounded(box.center());  // what is written about its middle has its middle at (0, 0), then
+    auto const size = rounded({box.max_x - box.min_x, box.max_y - box.min_y});
+    shape.length = size.x();
+    shape.width = size.y();
     return shape;
   }
 
