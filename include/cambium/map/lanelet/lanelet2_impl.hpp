@@ -14,6 +14,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
+#include "cambium/map/lanelet/detail/lanelet_tags.hpp"
 #include "cambium/map/lanelet/detail/osm_ways.hpp"
 #include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/map/lanes/signal_codes.hpp"
@@ -89,78 +90,12 @@ class Lanelet2Reader {
     return found;
   }
 
-  /// What a subtype means: the kind of lane, and the speed limits of Lanelet2's German rules within and outside of
-  /// towns (GermanTrafficRules and lanelet2_traffic_rules' table) [km/h], 0: none.
-  struct Subtype {
-    std::string_view word;
-    LaneType type;
-    double urban = 0.0, rural = 0.0;
-  };
-  [[nodiscard]] static Subtype const* find_subtype(std::string_view word) {
-    static constexpr Subtype all[] = {{"", LaneType::driving, 50, 50},
-                                      {"road", LaneType::driving, 50, 100},
-                                      {"highway", LaneType::driving, 130, 130},
-                                      {"play_street", LaneType::driving, 7, 7},
-                                      {"exit", LaneType::driving, 50, 50},
-                                      {"bus_lane", LaneType::bus, 50, 100},
-                                      {"emergency_lane", LaneType::shoulder},
-                                      {"road_shoulder", LaneType::shoulder},
-                                      {"bicycle_lane", LaneType::biking},
-                                      {"walkway", LaneType::walking},
-                                      {"shared_walkway", LaneType::walking},
-                                      {"pedestrian_lane", LaneType::walking},
-                                      {"crosswalk", LaneType::walking},
-                                      {"stairs", LaneType::walking},
-                                      {"parking", LaneType::parking}};
-    auto const* const found =
-        std::find_if(std::begin(all), std::end(all), [&](auto const& s) { return s.word == word; });
-    return found == std::end(all) ? nullptr : found;
-  }
-
-  /// The kind of lane: that of its subtype, unless tags `participant:...` say who may use it.
-  [[nodiscard]] static std::optional<LaneType> type_of(pugi::xml_node node, Subtype const* subtype) {
-    constexpr std::string_view prefix = "participant:";
-    bool any = false, cars = false, buses = false, bicycles = false, walkers = false, emergency = false;
-    for (auto child = node.first_child(); child; child = child.next_sibling()) {
-      std::string_view const key = child.attribute("k").value();
-      if (local_name(child) != "tag" || !key.starts_with(prefix)) continue;
-      any = true;
-      if (osm_truth(child.attribute("v").value()) != true) continue;
-      auto const who = key.substr(prefix.size());
-      cars = cars || who == "vehicle" || who == "vehicle:car";
-      buses = buses || who == "vehicle:bus" || who == "vehicle:taxi";
-      emergency = emergency || who == "vehicle:emergency";
-      bicycles = bicycles || who == "bicycle";
-      walkers = walkers || who.starts_with("pedestrian");
-    }
-    if (!any) return subtype != nullptr ? std::optional(subtype->type) : std::nullopt;
-    if (cars) return subtype != nullptr && is_drivable(subtype->type) ? subtype->type : LaneType::driving;
-    if (buses) return LaneType::bus;
-    if (bicycles) return LaneType::biking;
-    if (walkers) return LaneType::walking;
-    if (emergency) return LaneType::shoulder;
-    return std::nullopt;
-  }
-
-  /// A speed as "50", "50 km/h", "30 mph" or "13.9 m/s"; km/h without a unit. [m/s]
-  [[nodiscard]] static std::optional<double> speed_of(std::string_view text) {
-    text = trimmed(text);
-    auto const number_end = std::min(text.find_first_not_of("0123456789."), text.size());
-    auto const value = parse_number<double>(text.substr(0, number_end));
-    auto const unit = trimmed(text.substr(number_end));
-    if (!value || !(*value > 0.0)) return std::nullopt;
-    if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return *value / 3.6;
-    if (unit == "mph" || unit == "m/h") return *value * 0.44704;
-    if (unit == "m/s" || unit == "mps") return value;
-    return std::nullopt;
-  }
-
   void read_lanelet(pugi::xml_node node) {
     auto const id = osm_id(context_, node);
     if (!id) return;
     auto const word = osm_tag(node, "subtype");
-    auto const* const subtype = find_subtype(word);
-    auto const type = type_of(node, subtype);
+    auto const* const subtype = lanelet_subtype(word);
+    auto const type = lane_type_of(node, subtype);
     if (!type)
       return context_.report(Severity::info, node,
                              "lanelet " + std::to_string(*id) + " of the subtype " + std::string(word) +
@@ -171,16 +106,16 @@ class Lanelet2Reader {
     read.lanelet.id = *id;
     read.lanelet.line = context_.line(node);
     read.lanelet.type = *type;
-    report_tags(node, *type);
+    report_lanelet_tags(context_, node, *type);
     auto const one_way = osm_truth(osm_tag(node, "one_way:vehicle"));
     read.lanelet.both_directions =
         is_drivable(*type) && !one_way.value_or(osm_truth(osm_tag(node, "one_way")).value_or(true));
     read.lanelet.in_junction = !osm_tag(node, "turn_direction").empty();
     if (auto const limit = osm_tag(node, "speed_limit"); !limit.empty()) {
-      read.lanelet.speed_limit = speed_of(limit);
+      read.lanelet.speed_limit = speed_of_text(limit);
       if (!read.lanelet.speed_limit) warn(node, "speed_limit=" + std::string(limit) + " is no speed; it was left out");
     }
-    auto const* const usual = subtype != nullptr && is_drivable(subtype->type) ? subtype : find_subtype("road");
+    auto const* const usual = subtype != nullptr && is_drivable(subtype->type) ? subtype : lanelet_subtype("road");
     if (!read.lanelet.speed_limit && is_drivable(*type))
       read.lanelet.speed_limit = (osm_tag(node, "location") == "nonurban" ? usual->rural : usual->urban) / 3.6;
     set_bounds(read, *left, *right);
@@ -201,25 +136,6 @@ class Lanelet2Reader {
           context_.report(Severity::warning, lanelet.line, "relation",
                           "lanelet " + std::to_string(lanelet.id) + " names the rule " + std::to_string(id) +
                               ", which is not there");
-  }
-
-  /// Tags of a lanelet that have no effect, or not the written one.
-  void report_tags(pugi::xml_node node, LaneType type) {
-    for (auto child = node.first_child(); child; child = child.next_sibling()) {
-      if (local_name(child) != "tag") continue;
-      std::string_view const key = child.attribute("k").value(), value = child.attribute("v").value();
-      auto const said = std::string(key) + "=" + std::string(value);
-      auto const truth = osm_truth(value);
-      bool const is_one_way = key == "one_way" || key == "one_way:vehicle";
-      if ((is_one_way || key.starts_with("participant:")) && !truth)
-        warn(child, said + " is neither yes nor no; it was left out");
-      else if (is_one_way && truth == false && type == LaneType::biking)
-        context_.report(Severity::info, child, said + ": bicycle lanes are used one way only, as their bounds run");
-      else if (key == "no_drivable_lane" && truth != false && is_drivable(type))
-        warn(child, said + " is not read: its subtype and participants say that it is driven on");
-      else if (key.starts_with("speed_limit:"))
-        warn(child, said + " is not read: limits hold for everyone");
-    }
   }
 
   /// Ways may be written either way round: the bounds are turned so that they run alike, left on the left.
@@ -441,11 +357,11 @@ class Lanelet2Reader {
   [[nodiscard]] std::optional<double> sign_speed(pugi::xml_node node) {
     std::optional<double> limit;
     for_each_sign(node, [&](std::string_view code) {
-      if (code.starts_with("de274-")) limit = speed_of(code.substr(6));
+      if (code.starts_with("de274-")) limit = speed_of_text(code.substr(6));
       if (code.starts_with("de274_1") || code.starts_with("de274.1")) limit = 30.0 / 3.6;  // a zone
       if (code == "de310") limit = 50.0 / 3.6;
     });
-    return limit ? limit : speed_of(osm_tag(node, "sign_type"));
+    return limit ? limit : speed_of_text(osm_tag(node, "sign_type"));
   }
 
   /// Who follows whom, and who lies beside whom.

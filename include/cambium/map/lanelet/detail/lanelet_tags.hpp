@@ -1,0 +1,106 @@
+#pragma once
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <pugixml.hpp>
+
+#include "cambium/core/error.hpp"
+#include "cambium/map/lanelet/detail/osm_ways.hpp"
+#include "cambium/map/road/lane_type.hpp"
+#include "cambium/map/opendrive/xml.hpp"
+
+namespace cambium::map::detail {
+
+/// What a subtype means: the kind of lane, and the speed limits of Lanelet2's German rules within and outside of
+/// towns (GermanTrafficRules and lanelet2_traffic_rules' table) [km/h], 0: none.
+struct LaneletSubtype {
+  std::string_view word;
+  LaneType type;
+  double urban = 0.0, rural = 0.0;
+};
+[[nodiscard]] inline LaneletSubtype const* lanelet_subtype(std::string_view word) {
+  static constexpr LaneletSubtype all[] = {{"", LaneType::driving, 50, 50},
+                                           {"road", LaneType::driving, 50, 100},
+                                           {"highway", LaneType::driving, 130, 130},
+                                           {"play_street", LaneType::driving, 7, 7},
+                                           {"exit", LaneType::driving, 50, 50},
+                                           {"bus_lane", LaneType::bus, 50, 100},
+                                           {"emergency_lane", LaneType::shoulder},
+                                           {"road_shoulder", LaneType::shoulder},
+                                           {"bicycle_lane", LaneType::biking},
+                                           {"walkway", LaneType::walking},
+                                           {"shared_walkway", LaneType::walking},
+                                           {"pedestrian_lane", LaneType::walking},
+                                           {"crosswalk", LaneType::walking},
+                                           {"stairs", LaneType::walking},
+                                           {"parking", LaneType::parking}};
+  auto const* const found = std::find_if(std::begin(all), std::end(all), [&](auto const& s) { return s.word == word; });
+  return found == std::end(all) ? nullptr : found;
+}
+
+/// The kind of lane of a lanelet: that of its subtype, unless tags `participant:...` say who may use it.
+[[nodiscard]] inline std::optional<LaneType> lane_type_of(pugi::xml_node node, LaneletSubtype const* subtype) {
+  constexpr std::string_view prefix = "participant:";
+  bool any = false, cars = false, buses = false, bicycles = false, walkers = false, emergency = false;
+  for (auto child = node.first_child(); child; child = child.next_sibling()) {
+    std::string_view const key = child.attribute("k").value();
+    if (local_name(child) != "tag" || !key.starts_with(prefix)) continue;
+    any = true;
+    if (osm_truth(child.attribute("v").value()) != true) continue;
+    auto const who = key.substr(prefix.size());
+    cars = cars || who == "vehicle" || who == "vehicle:car";
+    buses = buses || who == "vehicle:bus" || who == "vehicle:taxi";
+    emergency = emergency || who == "vehicle:emergency";
+    bicycles = bicycles || who == "bicycle";
+    walkers = walkers || who.starts_with("pedestrian");
+  }
+  if (!any) return subtype != nullptr ? std::optional(subtype->type) : std::nullopt;
+  if (cars) return subtype != nullptr && is_drivable(subtype->type) ? subtype->type : LaneType::driving;
+  if (buses) return LaneType::bus;
+  if (bicycles) return LaneType::biking;
+  if (walkers) return LaneType::walking;
+  if (emergency) return LaneType::shoulder;
+  return std::nullopt;
+}
+
+/// A speed as "50", "50 km/h", "30 mph" or "13.9 m/s"; km/h without a unit. [m/s]
+[[nodiscard]] inline std::optional<double> speed_of_text(std::string_view text) {
+  text = trimmed(text);
+  auto const number_end = std::min(text.find_first_not_of("0123456789."), text.size());
+  auto const value = parse_number<double>(text.substr(0, number_end));
+  auto const unit = trimmed(text.substr(number_end));
+  if (!value || !(*value > 0.0)) return std::nullopt;
+  if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return *value / 3.6;
+  if (unit == "mph" || unit == "m/h") return *value * 0.44704;
+  if (unit == "m/s" || unit == "mps") return value;
+  return std::nullopt;
+}
+
+/// Reports tags of a lanelet that have no effect, or not the written one.
+inline void report_lanelet_tags(XmlContext& context, pugi::xml_node node, LaneType type) {
+  auto const warn = [&](pugi::xml_node at, std::string sentence) {
+    context.report(Severity::warning, at, std::move(sentence));
+  };
+  for (auto child = node.first_child(); child; child = child.next_sibling()) {
+    if (local_name(child) != "tag") continue;
+    std::string_view const key = child.attribute("k").value(), value = child.attribute("v").value();
+    auto const said = std::string(key) + "=" + std::string(value);
+    auto const truth = osm_truth(value);
+    bool const is_one_way = key == "one_way" || key == "one_way:vehicle";
+    if ((is_one_way || key.starts_with("participant:")) && !truth)
+      warn(child, said + " is neither yes nor no; it was left out");
+    else if (is_one_way && truth == false && type == LaneType::biking)
+      context.report(Severity::info, child, said + ": bicycle lanes are used one way only, as their bounds run");
+    else if (key == "no_drivable_lane" && truth != false && is_drivable(type))
+      warn(child, said + " is not read: its subtype and participants say that it is driven on");
+    else if (key.starts_with("speed_limit:"))
+      warn(child, said + " is not read: limits hold for everyone");
+  }
+}
+
+}  // namespace cambium::map::detail
