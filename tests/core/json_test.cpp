@@ -165,6 +165,13 @@ TEST_CASE("an error says where it is and what to do") {
                        ParameterError);
 }
 
+TEST_CASE("no id is a word, whatever integer its enum is") {
+  auto const text = to_json(LaneChange{.left = 3.0f}, JsonDetail::everything);
+  CHECK(text.find("\"target\": \"none\"") != std::string::npos);
+  CHECK(from_json<LaneChange>(text) == LaneChange{.left = 3.0f});
+  CHECK(from_json<LaneChange>(to_json(LaneChange{.target = CorridorId{3}})) == LaneChange{.target = CorridorId{3}});
+}
+
 TEST_CASE("a choice is written by name, whatever integer its enum is") {
   CHECK(to_json(Driver{Mode::motorway}) == "{\"mode\": \"motorway\"}\n");
   CHECK(from_json<Driver>(R"({"mode": "motorway"})").mode == Mode::motorway);

@@ -61,7 +61,7 @@ class JsonWriter {
         json.value = *static_cast<std::string const*>(object);
         break;
       default:
-        json = json_of(path, info, PlainValue::at(object, type));
+        json = json_of(path, info, type, PlainValue::at(object, type));
     }
     return !are_equal(type, object, usual, Equality::of_bits);  // 0 is not -0
   }
@@ -100,7 +100,8 @@ class JsonWriter {
     return is_written;
   }
 
-  [[nodiscard]] JsonValue json_of(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) const {
+  [[nodiscard]] JsonValue json_of(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type,
+                                  PlainValue const& value) const {
     using Kind = TypeInfo::Kind;
     switch (value.kind) {
       case Kind::boolean:
@@ -110,10 +111,8 @@ class JsonWriter {
       case Kind::id:
       case Kind::lane:
       case Kind::corridor:
-        if (auto const id = static_cast<LaneId>(value.bits); !is_valid(id))
-          return {std::string("none")};
-        else if (value.kind == Kind::lane && lanes_ != nullptr)
-          return {lanes_->name(id)};
+        if (value.bits == PlainValue::highest(type).bits) return {std::string("none")};  // of any width
+        if (value.kind == Kind::lane && lanes_ != nullptr) return {lanes_->name(static_cast<LaneId>(value.bits))};
         return {value.bits};
       case Kind::signed_integer:
         return {static_cast<std::int64_t>(value.bits)};
