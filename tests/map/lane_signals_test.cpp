@@ -23,8 +23,8 @@ std::string lane(std::string const& link = "<predecessor id=\"-1\"/><successor i
 }
 
 struct RoadText {
-  std::string id, junction = "-1", link, geometry = "x=\"0\" y=\"0\" hdg=\"0\" length=\"100\"><line/>", length = "100",
-                  sections = "<laneSection s=\"0\">" + lane() + "</laneSection>", signals;
+  std::string id{}, junction = "-1", link{}, geometry = "x=\"0\" y=\"0\" hdg=\"0\" length=\"100\"><line/>",
+                    length = "100", sections = "<laneSection s=\"0\">" + lane() + "</laneSection>", signals{};
 
   [[nodiscard]] std::string text() const {
     return "<road id=\"" + id + "\" length=\"" + length + "\" junction=\"" + junction + "\"><link>" + link +
