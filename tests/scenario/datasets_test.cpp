@@ -247,7 +247,7 @@ TEST_CASE("an id that comes again after a long time is another road user") {
 
 TEST_CASE("another road user with an id seen before has its own size and type") {
   std::string const big = std::to_string(std::numeric_limits<std::int64_t>::max());
-  for (std::string const id : {std::string("3"), big}) {
+  for (std::string const& id : {std::string("3"), big}) {
     std::string text = "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy,psi_rad,length,width\n" + id +
                        ",1,100,car,0,0,5,0,0,4,2\n" + id + ",2,200,car,0.5,0,5,0,0,4,2\n";
     text += id + ",3,9000,truck,10,0,5,0,0,12,2.5\n" + id + ",4,9100,truck,10.5,0,5,0,0,12,2.5\n";
