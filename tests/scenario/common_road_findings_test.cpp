@@ -206,7 +206,8 @@ TEST_CASE("values that cannot be meant, links given once and ids given twice are
   CHECK(has(links, "info: <lanelet> of lanelet 1: it names lanelet 2 as its successor, which does not name it"));
   CHECK(has(links, "lanelet 3: it names lanelet 2 as its predecessor, which does not name it as its successor"));
   CHECK(has(links, "lanelet 4: it names lanelet 1 as its left neighbour, which does not name it as its right one"));
-  CHECK(links.diagnostics.size() == 3);
+  CHECK(has(links, "lanelet 4: it ends beside lanelet 1, and was merged into that one"));
+  CHECK(links.diagnostics.size() == 4);
 
   auto const red = cycle({{10, "red"}});
   auto const twice = read(lanelet(1, 0) + lanelet(1, -20) + light(8, red) + light(8, red));
