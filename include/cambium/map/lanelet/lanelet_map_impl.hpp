@@ -124,7 +124,7 @@ class LaneletMapMaker {
         if (at == places.end() || id == junctions_.end() || network_.junction_of[at->second] != junction)
           network_.report(Severity::info, i,
                           "it goes before lanelet " + std::to_string(other) +
-                              ", with which it shares no junction; that says nothing");
+                              ", with which it shares no junction; that priority was ignored");
         else
           made[numbers.at(id->second)].priorities.push_back(
               {std::to_string(network_.lanelets[i].id), std::to_string(other)});
@@ -166,7 +166,7 @@ class LaneletMapMaker {
       double const s = lane.length() * k / count;
       Point const p = lane.path.pose(s).position();
       if (is_within(ring, p)) continue;
-      double const away = std::min({distance_to(ring, p), distance_to(std::array{ring.front(), ring.back()}, p)});
+      double const away = std::min(distance_to(ring, p), distance_to(std::array{ring.front(), ring.back()}, p));
       if (away > farthest) std::tie(farthest, where) = std::pair(away, s);
     }
     if (farthest > most)
