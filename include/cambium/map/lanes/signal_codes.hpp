@@ -52,6 +52,12 @@ enum class Arrow : std::uint8_t { none = 0, left = 1, straight = 2, right = 4 };
   return (static_cast<std::uint8_t>(arrow) & static_cast<std::uint8_t>(way)) != 0;
 }
 
+/// The arrow of a way that turns by so much [rad], positive to the left.
+[[nodiscard]] constexpr Arrow arrow_of_turn(double turn) {
+  constexpr double least = 0.5;  // own choice
+  return turn > least ? Arrow::left : turn < -least ? Arrow::right : Arrow::straight;
+}
+
 /// A row of the catalogue. Country "" stands for OpenDRIVE's own numbers and for the German ones, which files of all
 /// countries use; subtype "" for any.
 struct SignalCode {

@@ -157,8 +157,7 @@ class LaneSignals {
     while (end->successors.size() == 1 && lanes_[index_of(end->successors.front())].road == begin->road &&
            end->successors.front() != way)
       end = &lanes_[index_of(end->successors.front())];
-    double const turn = geometry::angle_difference(end->path.end_pose().heading, begin->path.begin_pose().heading);
-    return turn > 0.5 ? Arrow::left : turn < -0.5 ? Arrow::right : Arrow::straight;
+    return arrow_of_turn(geometry::angle_difference(end->path.end_pose().heading, begin->path.begin_pose().heading));
   }
 
   /// The light that a signal belongs to: its controller's; bulbs without one are a light with those of the same arrow

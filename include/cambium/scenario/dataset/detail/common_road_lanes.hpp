@@ -296,9 +296,8 @@ class CommonRoadLanes : protected CommonRoadSignals {
     auto const heading = [](geometry::Point const& a, geometry::Point const& b) {
       return std::atan2(b.y() - a.y(), b.x() - a.x());
     };
-    double const turn =
-        geometry::angle_difference(heading(line[line.size() - 2], line.back()), heading(line[0], line[1]));
-    return turn > 0.5 ? map::Arrow::left : turn < -0.5 ? map::Arrow::right : map::Arrow::straight;
+    return map::arrow_of_turn(
+        geometry::angle_difference(heading(line[line.size() - 2], line.back()), heading(line[0], line[1])));
   }
 
   /// Links and neighbours that only one of both lanelets names.
