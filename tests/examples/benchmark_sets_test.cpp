@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cambium/benchmark/result_store.hpp"
+#include "cambium/core/text.hpp"
 #include "program.hpp"
 
 using namespace program;

@@ -122,6 +122,7 @@ TEST_CASE("nobody enters into a queue that has grown back to the source, and the
   saturated.enter(
       world, [&](TrafficSource const& source, RandomStream& random) { return next_vehicle(*road, source, random); });
   CHECK(saturated.waiting(0) == 1);
+  CHECK_NOTHROW(check_parameters(saturated));  // who waits has a place
 }
 
 TEST_CASE("nobody enters beside a vehicle that changes into the lane, in a bend as on a straight road") {

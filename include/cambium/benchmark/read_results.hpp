@@ -6,6 +6,7 @@
 
 #include "cambium/benchmark/result_group.hpp"
 #include "cambium/benchmark/result_store.hpp"
+#include "cambium/core/text.hpp"
 
 namespace cambium {
 

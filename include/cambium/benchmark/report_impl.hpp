@@ -15,6 +15,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/text.hpp"
 
 namespace cambium {
 

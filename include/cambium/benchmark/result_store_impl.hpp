@@ -16,6 +16,7 @@
 #include "cambium/benchmark/run_result.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/core/type_info.hpp"
 
 namespace cambium {

@@ -19,13 +19,6 @@ enum class RunErrorKind : std::uint8_t { run, plans_too_long, process_died };
 /// Which values of a measure are better.
 enum class Better { neither, more, less };
 
-/// A hash as in the database: 16 hexadecimal digits.
-[[nodiscard]] inline std::string hash_text(std::uint64_t hash) {
-  std::string text(16, '0');
-  for (std::size_t i = 16; i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 15u];
-  return text;
-}
-
 /// The result of one scenario with one behaviour. It depends on nothing but these two and the library: not on threads,
 /// machine load or time of day (`RunTimes` does). Excepted are errors for which the machine may be to blame.
 struct RunResult {

@@ -21,6 +21,7 @@
 #include "cambium/benchmark/html_report.hpp"
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/hash.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/scenario/scenario_set.hpp"
@@ -74,7 +75,7 @@ namespace detail {
 /// Hash of what a process has read: scenarios of hash `set`, and a contender.
 template <class World>
 [[nodiscard]] std::uint64_t setup_of(std::uint64_t set, Contender<World> const& contender) {
-  return set ^ (contender.parameters_hash * 0x9e3779b97f4a7c15u) ^ std::hash<std::string>{}(contender.name);
+  return detail::mixed(detail::mixed(set, contender.parameters_hash), detail::checksum_of(contender.name));
 }
 
 /// Longest time of a job [s]: generous, because it ends only what never returns. A job runs its scenario twice if it

@@ -14,4 +14,11 @@ inline constexpr double blameless_speed = 0.05;
 /// Distance between the axles of `geometry::car` [m]: for models of vehicles that name none of their own.
 inline constexpr double car_wheel_base = 2.7;
 
+/// Times that differ by at most this count as equal [s]: sums of steps differ by rounding.
+inline constexpr double same_time = 1e-9;
+
+/// Bounds of comfort of nuPlan's metrics, from human drivers [m/s^2] (Karnchanachari et al. 2024).
+inline constexpr double comfortable_deceleration = 4.05, comfortable_acceleration = 2.4,
+                        comfortable_lateral_acceleration = 4.89;
+
 }  // namespace cambium

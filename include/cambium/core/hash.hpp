@@ -35,6 +35,13 @@ class Fnv1a {
   Word hash_ = static_cast<Word>(sizeof(Word) == 4 ? 0x811c9dc5u : 0xcbf29ce484222325u);
 };
 
+/// `hash` with another word added: for tables and keys, quicker than `Fnv1a`, and each bit of the word reaches the low
+/// half of the result. Multiplies by the golden ratio (Knuth 1973, multiplicative hashing).
+[[nodiscard]] constexpr std::uint64_t mixed(std::uint64_t hash, std::uint64_t word) {
+  hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+  return hash ^ (hash >> 32);
+}
+
 /// FNV-1a over words of 8 bytes, the lowest byte first; the last word is filled up by zeros.
 [[nodiscard]] inline std::uint64_t checksum_of(std::string_view bytes) {
   Fnv1a<std::uint64_t> hash(Fnv1a<std::uint64_t>().value() ^ bytes.size());

@@ -318,10 +318,7 @@ CAMBIUM_COLD std::uint64_t parameters_hash(TypeInfo const& type, void const* obj
   struct Hash final : ValueVisitor {
     std::uint64_t hash = 0xcbf29ce484222325u;
 
-    void add_bits(std::uint64_t bits) {
-      hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 32;
-    }
+    void add_bits(std::uint64_t bits) { hash = mixed(hash, bits); }
     void add_text(std::string_view text) {  // eight letters at a time: most of the time goes into names
       add_bits(text.size());
       std::uint64_t word = 0;

@@ -4,12 +4,24 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
 #include <vector>
+
+namespace cambium {
+
+/// A hash as in files, databases and messages: 16 hexadecimal digits.
+[[nodiscard]] inline std::string hash_text(std::uint64_t hash) {
+  std::string text(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 15u];
+  return text;
+}
+
+}  // namespace cambium
 
 /// Parsing of words and numbers in user text.
 namespace cambium::detail {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "cambium/core/constants.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/execution/execution_model.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -22,19 +23,17 @@ struct InterpolateExecution {
   [[nodiscard]] Executed<S> execute(BasicPlan<S> const& plan, S const& now, Dynamics const&, double time) const {
     auto const& states = plan.trajectory;
     if (states.empty()) return {};
-    if (std::abs(states.back().time - time) <= exact) return at_time(states.back(), time);
+    if (std::abs(states.back().time - time) <= same_time) return at_time(states.back(), time);
     S const* before = &now;
     for (auto const& after : states) {
-      if (time >= before->time - exact && time <= after.time + exact && before->time < after.time)
-        return after.time - time <= exact ? at_time(after, time) : between(*before, after, time);
+      if (time >= before->time - same_time && time <= after.time + same_time && before->time < after.time)
+        return after.time - time <= same_time ? at_time(after, time) : between(*before, after, time);
       before = &after;
     }
     return {};
   }
 
  private:
-  static constexpr double exact = 1e-9;  // times closer than this count as equal [s]
-
   template <MotionState S>
   [[nodiscard]] static Executed<S> between(S const& a, S const& b, double time) {
     double const u = (time - a.time) / (b.time - a.time);

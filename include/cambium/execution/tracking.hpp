@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 
+#include "cambium/core/constants.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"
@@ -144,7 +145,8 @@ template <MotionState S>
 [[nodiscard]] Reference reference_at(BasicPlan<S> const& plan, S const& start, double time) {
   S const* before = &start;
   for (auto const& after : plan.trajectory) {
-    if (after.time > before->time + 1e-9 && time <= after.time + 1e-9) return reference_between(*before, after, time);
+    if (after.time > before->time + same_time && time <= after.time + same_time)
+      return reference_between(*before, after, time);
     before = &after;
   }
   return {before->x, before->y, before->heading, before->speed, 0.0, 0.0};
@@ -160,7 +162,7 @@ template <class Law, MotionState S, class Dynamics>
 [[nodiscard]] Executed<S> track(Actuation const& actuation, Law const& law, BasicPlan<S> const& plan, S const& now,
                                 Dynamics const& dynamics, double time, TrackingMemory<S>& memory,
                                 RandomStream& random) {
-  if (plan.trajectory.empty() || !(plan.trajectory.back().time >= time - 1e-9)) return {};
+  if (plan.trajectory.empty() || !(plan.trajectory.back().time >= time - same_time)) return {};
   bool const goes_on = memory.begun && std::abs(memory.reference.time - now.time) < 1e-6;
   S const start = goes_on ? memory.reference : now;
   auto const draw = [&random](Normal const& noise) { return noise.deviation > 0.0 ? noise(random) : noise.mean; };
@@ -169,7 +171,7 @@ template <class Law, MotionState S, class Dynamics>
   S x = now;
   x.speed = std::max(0.0, x.speed);
   double h = 0.0;
-  for (double left = time - now.time; left > 1e-9; left -= h) {
+  for (double left = time - now.time; left > same_time; left -= h) {
     h = std::min(left, interval);
     bool const gives = slot == 0.0 || !memory.begun || memory.waited >= static_cast<float>(slot - 1e-6);
     Action command{};

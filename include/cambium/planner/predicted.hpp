@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/plan.hpp"
@@ -204,7 +205,7 @@ template <class View>
 void go_straight_on(View const& view, double end, Plan<View>& plan) {
   auto state = plan.trajectory.empty() ? view.state() : plan.trajectory.back();
   double const left = end - state.time;
-  if (!plan.trajectory.empty() && left <= 1e-9) return;
+  if (!plan.trajectory.empty() && left <= same_time) return;
   auto const along = geometry::sin_cos(state.heading);
   state.x += along.cos * state.speed * left;
   state.y += along.sin * state.speed * left;

@@ -226,8 +226,8 @@ class TrafficInflow {
     for (; queue.arrival <= time; queue.arrival += headway()) ++queue.waiting;
   }
 
-  /// The agent's id if it has entered, else none.
-  [[nodiscard]] AgentId try_to_enter(WorldType& world, TrafficSource const& source, AgentSpec spec) const {
+  /// The agent's id if it has entered, else none. Places it in any case.
+  [[nodiscard]] AgentId try_to_enter(WorldType& world, TrafficSource const& source, AgentSpec& spec) const {
     auto const& path = source.way ? source.way->corridors[source.way->main].center : world.map().lane(source.lane).path;
     auto const pose = path.pose(behind_begin + spec.shape.rear);
     if (is_occupied(world, pose, spec.shape)) return none<AgentId>;

@@ -27,6 +27,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/hash.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/core/version.hpp"
 #include "cambium/snapshot/snapshot.hpp"
 
@@ -261,11 +262,6 @@ CAMBIUM_COLD std::string build_tag() {
 #endif
 }
 
-[[nodiscard]] inline std::string hex(std::uint64_t number) {
-  std::string text(16, '0');
-  for (std::size_t i = 0; i < 16; ++i) text[15 - i] = "0123456789abcdef"[number >> (4 * i) & 15u];
-  return text;
-}
 [[nodiscard]] inline std::optional<std::uint64_t> number_of(std::string_view text, int base) {
   std::uint64_t number = 0;
   auto const end = std::from_chars(text.data(), text.data() + text.size(), number, base);
@@ -310,16 +306,17 @@ CAMBIUM_COLD std::string with_head(ArchivedParts const& parts, SnapshotOptions c
   line("parts", parts.names);
   if (parts.map_hash) {
     line("time", exact_text(parts.time));
-    line("map", hex(*parts.map_hash));
+    line("map", hash_text(*parts.map_hash));
   }
   if (!options.map_file.empty()) line("map_file", printable(options.map_file));
   if (!options.map_text.empty()) line("map_bytes", std::to_string(options.map_text.size()));
   if (!options.component.empty()) line("component", printable(options.component));
   if (!options.note.empty()) line("note", printable(options.note));
-  if (options.result) line("result", hex(*options.result));
+  if (options.result) line("result", hash_text(*options.result));
   body.append("\n").append(options.map_text).append(parts.archive);
   std::string bytes(snapshot_magic);
-  bytes += std::to_string(snapshot_version) + "\n" + std::to_string(body.size()) + " " + hex(checksum_of(body)) + "\n";
+  bytes +=
+      std::to_string(snapshot_version) + "\n" + std::to_string(body.size()) + " " + hash_text(checksum_of(body)) + "\n";
   return bytes + body;
 }
 
@@ -393,7 +390,7 @@ inline constexpr std::pair<std::string_view, std::string SnapshotInfo::*> head_t
   if (*size != bytes.size())
     damaged((*size > bytes.size() ? "is cut short: " : "is too long: ") + std::to_string(bytes.size()) +
             " bytes instead of " + std::to_string(*size));
-  if (*version != std::to_string(*number) || seal != std::to_string(*size) + " " + hex(checksum_of(bytes)))
+  if (*version != std::to_string(*number) || seal != std::to_string(*size) + " " + hash_text(checksum_of(bytes)))
     damaged("has a wrong checksum");
   return take_info(bytes, where);
 }
@@ -409,8 +406,8 @@ CAMBIUM_COLD void read_snapshot(std::string_view bytes, std::string const& where
                         "write it as text there");
   if (scene.map != nullptr && info.map_hash && hash_of_map(*scene.map) != *info.map_hash)
     throw SnapshotError(where,
-                        "was taken on another map: its hash is " + hex(*info.map_hash) + ", that of the given one " +
-                            hex(hash_of_map(*scene.map)),
+                        "was taken on another map: its hash is " + hash_text(*info.map_hash) +
+                            ", that of the given one " + hash_text(hash_of_map(*scene.map)),
                         info.map_file.empty() ? "give the world the map that it was taken on"
                                               : "give the world the map of '" + info.map_file + "'");
   constexpr std::array load{&load_parts<BinaryIn>, &load_parts<TextIn>, &load_parts<XmlIn>};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
 
@@ -82,9 +83,6 @@ struct StaticTrajectory {
     plan.action.acceleration = (recorded.speed - at(view.time()).speed) / dt;
     return plan;
   }
-
- private:
-  static constexpr double same_time = 1e-9;  // [s]
 };
 static_assert(BehaviorModel<StaticTrajectory>);
 

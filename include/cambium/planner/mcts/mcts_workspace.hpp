@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/predicted.hpp"
 #include "cambium/planner/mcts/traffic_domain.hpp"
@@ -127,7 +128,7 @@ class MctsWorkspace {
     state_ = domain.root();
     joint_.resize(agents);
     RandomStream none(0, 0, 0);
-    for (std::size_t step = 0; state_.frame.time < end - 1e-9; ++step) {
+    for (std::size_t step = 0; state_.frame.time < end - same_time; ++step) {
       if (auto const hold = static_cast<std::size_t>(domain.hold()); step % hold == 0) {
         auto const decision = step / hold;
         for (std::size_t k = 0; k < agents; ++k)
@@ -137,7 +138,7 @@ class MctsWorkspace {
       }
       // `end` may lie between two steps. The course may bend there: take a shorter step instead of interpolating.
       double const left = end - state_.frame.time;
-      domain.advance(state_, left < domain.dt() - 1e-9 ? left : domain.dt());
+      domain.advance(state_, left < domain.dt() - same_time ? left : domain.dt());
       f(std::as_const(state_.frame));
     }
   }

@@ -12,6 +12,7 @@
 
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/lane_change/idm_proposal.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/terms.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -28,9 +29,9 @@ struct ProposalScoring {
   double comfort = 2.0;
   double route = 20.0;
   double look_ahead = 0.9;
-  double lowest_acceleration = -4.05;
-  double highest_acceleration = 2.4;
-  double lateral_acceleration = 4.89;
+  double lowest_acceleration = -comfortable_deceleration;
+  double highest_acceleration = comfortable_acceleration;
+  double lateral_acceleration = comfortable_lateral_acceleration;
   double jerk = 8.37;
   double indifference = 0.01;
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/stable_sort.hpp"
@@ -88,7 +89,6 @@ struct RecordedScenario {
   /// Adds the agents of `later` whose time has come, except for the first `entered`, which are in the world already.
   /// Returns how many of them are in the world then. Throws what `World::add` throws.
   [[nodiscard]] std::size_t enter(WorldType& world, std::size_t entered) const {
-    constexpr double same_time = 1e-9;  // [s]
     for (; entered < later.size() && later[entered].time <= world.time() + same_time; ++entered) {
       auto const& entrant = later[entered];
       auto spec = entrant.spec;

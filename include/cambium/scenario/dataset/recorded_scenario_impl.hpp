@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/constants.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/oriented_box.hpp"
@@ -189,7 +190,7 @@ CAMBIUM_COLD std::vector<RecordingWindow> windows_of(RecordedTraffic const& traf
     throw ParameterError("windows_of", "the length or the distance of windows is not above 0", "give seconds");
   std::vector<RecordingWindow> windows;
   double const first = traffic.begin(), last = traffic.end();
-  for (std::size_t i = 0; first + every * static_cast<double>(i) + length <= last + 1e-9; ++i) {
+  for (std::size_t i = 0; first + every * static_cast<double>(i) + length <= last + same_time; ++i) {
     double const begin = first + every * static_cast<double>(i);
     auto const moving = std::count_if(traffic.tracks.begin(), traffic.tracks.end(), [&](Track const& track) {
       return !track.stands && track.begin() < begin + length && track.end() > begin;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/shape.hpp"
@@ -25,9 +26,6 @@
 #include "cambium/world/roster.hpp"
 
 namespace cambium::detail {
-
-/// Times that differ by at most this count as equal [s].
-inline constexpr double same_time = 1e-9;
 
 /// The part of an entering agent that does not depend on the world's models.
 struct EnteringSpec {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/hash.hpp"
 #include "cambium/planner/search/search_domain.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
@@ -218,10 +219,9 @@ class SearchTree {
   }
 
   [[nodiscard]] static std::size_t hash(std::uint32_t parent, std::span<std::uint16_t const> joint) {
-    std::uint64_t h = parent;
-    for (auto const arm : joint) h = (h ^ arm) * 0x9E3779B97F4A7C15u + 0x2545F4914F6CDD1Du;
-    h ^= h >> 32;
-    return static_cast<std::size_t>(h * 0xD6E8FEB86659FD93u >> 17);
+    std::uint64_t hash = parent;
+    for (auto const arm : joint) hash = cambium::detail::mixed(hash, arm);
+    return static_cast<std::size_t>(hash);
   }
 
   /// Enters a node into the table, or appends it to the outcomes of the same actions.
