@@ -128,6 +128,20 @@ TEST_CASE("oddities that are read rightly stay so") {
   CHECK(number->findings.find("is not a finite number") != std::string::npos);
 }
 
+TEST_CASE("roads that cross without a junction have lanes that cross") {
+  for (std::string const name : {"all_way_stop_no_junction", "crossing_no_signs_no_junction"}) {
+    auto const made = opendrive(name);
+    if (!made) return;
+    CAPTURE(name);
+    CHECK_MESSAGE(made->count == 0, made->findings);
+    std::size_t crossings = 0;
+    for (auto const& lane : made->map->lanes())
+      for (auto const& overlap : lane.overlaps) crossings += overlap.kind == map::OverlapKind::crossing ? 1 : 0;
+    CHECK(crossings >= 8);  // both ways of both roads
+    CHECK(signals_of(*made->map).empty() == (name == "crossing_no_signs_no_junction"));
+  }
+}
+
 TEST_CASE("a lane that folds on the inner side of a bend is a warning with its place") {
   auto const text = [](double curvature) {
     return "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road name=\"\" length=\"6\" id=\"1\" junction=\"-1\">"

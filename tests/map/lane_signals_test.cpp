@@ -1,6 +1,8 @@
 // Which lanes OpenDRIVE's signs and lights count for, and joints of roads that the file links in part.
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -14,7 +16,6 @@ namespace {
 
 using cambium::LoadedMap;
 using cambium::map::Arrow;
-using cambium::map::find_signal_code;
 using cambium::map::SignalMeaning;
 
 std::string lane(std::string const& link = "<predecessor id=\"-1\"/><successor id=\"-1\"/>") {
@@ -122,14 +123,20 @@ TEST_CASE("lights of a controller are one; a second controller and a missing sig
 }
 
 TEST_CASE("codes are found in the spellings of files") {
-  CHECK(find_signal_code("DEU", "274-55", "")->meaning == SignalMeaning::speed_limit);
-  CHECK(find_signal_code("Germany", "206", "-1")->meaning == SignalMeaning::stop);
-  for (auto const* country : {"US", "usa", "United States"}) CHECK(find_signal_code(country, "R1-1", "") != nullptr);
-  CHECK(find_signal_code("AUS", "R1-2", "")->meaning == SignalMeaning::give_way);
-  CHECK(find_signal_code("ESP", "r2", "")->meaning == SignalMeaning::stop);
-  CHECK(find_signal_code("SE", "C", "31")->meaning == SignalMeaning::speed_limit);
-  CHECK(find_signal_code("DE", "R1-1", "") == nullptr);
-  CHECK(find_signal_code("", "-1", "") == nullptr);
+  auto const meaning = [](char const* country, char const* type, char const* subtype = "") {
+    auto const sense = cambium::map::find_signal(country, type, subtype);
+    return sense ? std::optional(sense->meaning) : std::nullopt;
+  };
+  CHECK(meaning("DEU", "274-55") == SignalMeaning::speed_limit);
+  CHECK(meaning("Germany", "206", "-1") == SignalMeaning::stop);
+  for (auto const* country : {"US", "usa", "United States", "PRI"}) CHECK(meaning(country, "R1-1"));
+  CHECK(meaning("AUS", "R1-2") == SignalMeaning::give_way);
+  CHECK(meaning("ESP", "r2") == SignalMeaning::stop);
+  CHECK(meaning("SE", "C", "31") == SignalMeaning::speed_limit);
+  CHECK(meaning("FRA", "B14") == SignalMeaning::speed_limit);
+  CHECK(meaning("GRC", "\xCE\xA1-32") == SignalMeaning::speed_limit);
+  CHECK_FALSE(meaning("DE", "R1-1"));
+  CHECK_FALSE(meaning("", "-1"));
   std::map<std::string, Arrow> const arrows{{"10", Arrow::left},
                                             {"60", Arrow::left},
                                             {"80", Arrow::left},
@@ -142,9 +149,27 @@ TEST_CASE("codes are found in the spellings of files") {
                                             {"50", Arrow::straight | Arrow::right},
                                             {"100", Arrow::left | Arrow::right}};
   for (auto const* type : {"1000008", "1000010", "1000011", "1000012", "1000020"})
-    for (auto const& [subtype, arrow] : arrows)
-      CHECK(cambium::map::arrow_of(*find_signal_code("", type, subtype), subtype) == arrow);
-  CHECK(cambium::map::arrow_of(*find_signal_code("", "1000001", "10"), "10") == Arrow::none);
+    for (auto const& [subtype, arrow] : arrows) CHECK(cambium::map::find_signal("", type, subtype)->arrow == arrow);
+  CHECK(cambium::map::find_signal("", "1.000.011-10", "-1")->arrow == Arrow::left);
+  CHECK(cambium::map::find_signal("", "1000001", "10")->arrow == Arrow::none);
+}
+
+TEST_CASE("a sign between two sections counts once, and one that has no effect is a finding") {
+  auto const sign = fork(signal("a", 60.0, "206", "-1") + signal("b", 59.8, "205", "-1"));
+  using cambium::map::SignalKind;
+  std::multiset<SignalKind> kinds;
+  for (auto const& one : sign.map->lanes())
+    for (auto const& of : one.signals) kinds.insert(of.kind);
+  CHECK(kinds == std::multiset<SignalKind>{SignalKind::give_way, SignalKind::stop});
+  auto const behind = fork(signal("a", 100.2, "206", "-1"));
+  CHECK(std::any_of(behind.map->lanes().begin(), behind.map->lanes().end(),
+                    [](auto const& one) { return !one.signals.empty(); }));
+  auto const idle = fork(signal("a", 50.0, "1000002", "-1") + signal("b", 50.0, "1000002", "") +
+                         signal("c", 50.0, "-1", "") + signal("d", 50.0, "", ""));
+  CHECK(count(idle,
+              "signals of type 1000002 of country \"OpenDRIVE\" have no effect: they do not say who goes first "
+              "(2 of them)") == 1);
+  CHECK(count(idle, "signals without a type have no effect (2 of them)") == 1);
 }
 
 TEST_CASE("lanes of linked roads that meet are joined without links of their own, whatever the turn") {

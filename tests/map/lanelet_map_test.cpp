@@ -13,6 +13,7 @@
 #include "cambium/map/lanelet/detail/utm.hpp"
 #include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
+#include "cambium/map/opendrive.hpp"
 
 #include "../support/map_faults.hpp"
 #include "../support/corpus.hpp"
@@ -376,13 +377,26 @@ TEST_CASE("the UTM projection has the grid's known values") {
   CHECK(zone31(0.0, 0.0).y() == doctest::Approx(0.0));
   CHECK(zone31(45.0, 3.0).y() == doctest::Approx(4982950.400).epsilon(1e-9));  // 0.9996 of the meridian's arc
   CHECK(zone31(-45.0, 3.0).y() == doctest::Approx(-4982950.400).epsilon(1e-9));
+  // The grid's north is that of the zone's middle: Bergen lies in zone 32, Longyearbyen in 33.
+  auto const turn = [](double latitude, double longitude) {
+    auto const north = cambium::map::detail::UtmProjection(latitude, longitude)(latitude + 0.01, longitude);
+    return std::atan2(north.x(), north.y());
+  };
+  auto const expected = [](double latitude, double from_middle) {
+    return -std::sin(latitude * 0.0174533) * from_middle * 0.0174533;
+  };
+  CHECK(turn(60.4, 5.3) == doctest::Approx(expected(60.4, 5.3 - 9.0)).epsilon(0.01));
+  CHECK(turn(55.9, 5.3) == doctest::Approx(expected(55.9, 5.3 - 3.0)).epsilon(0.01));
+  CHECK(turn(78.2, 15.6) == doctest::Approx(expected(78.2, 0.6)).epsilon(0.01));
+  CHECK(turn(78.2, 22.0) == doctest::Approx(expected(78.2, -5.0)).epsilon(0.01));
 }
 
 TEST_CASE("INTERACTION's test map lies where its tracks do") {
   auto const file = corpus::find("scenarios/interaction/TestScenarioForScripts.osm");
   if (!file) return;
   auto const made = cambium::load_lanelet2(file->string());
-  CHECK(made.diagnostics.empty());
+  CHECK(made.diagnostics.size() == 2);
+  for (auto const& found : made.diagnostics) CHECK(found.sentence.find("location=city is neither") == 0);
   REQUIRE(made.lanes.size() == 2);
   auto const right = lane_of(made, 20).path, left = lane_of(made, 21).path;
   CHECK(right.pose(0.0).x == doctest::Approx(1.0).epsilon(1e-4));
@@ -463,6 +477,15 @@ TEST_CASE("what a Lanelet2 file says twice, wrongly or in vain is a finding") {
                 "rules without a subtype are not read: 1"},
            Case{"type='way' role='right' ref='14'", "type='node' role='right' ref='14'", "is a node, not a way"},
            Case{limit, limit + "<tag k='one_way' v='maybe'/>", "one_way=maybe is neither yes nor no"},
+           Case{limit, limit + "<tag k='one_way:bicycle' v='no'/>", "one_way:bicycle=no has no effect"},
+           Case{limit, limit + "<tag k='location' v='city'/>", "location=city is neither urban nor nonurban"},
+           Case{limit, limit + "<tag k='dynamic' v='yes'/>", "dynamic=yes is not read"},
+           Case{limit, "v='999999999'/>", "speed_limit=999999999 is no speed"},
+           Case{"ref='30'/>", "ref='30'/><member type='way' role='centerline' ref='12'/>",
+                "members in the role \"centerline\" of lanelets are not read: 1"},
+           Case{"role='yield' ref='21'/>", "role='yield' ref='21'/><member type='way' role='cancel_line' ref='15'/>",
+                "members in the role \"cancel_line\" of rules are not read: 1"},
+           Case{end, "<node id='99'/></osm>", "node 99 has no place, and no lanelet needs it"},
            Case{limit, limit + "<tag k='no_drivable_lane' v='yes'/>", "no_drivable_lane=yes is not read"},
            Case{limit, limit + "<tag k='speed_limit:vehicle:bus' v='30'/>", "speed_limit:vehicle:bus=30 is not read"},
            Case{"v='dashed'/>", "v='dashed'/><tag k='lane_change' v='YES'/>", "lane_change=YES is neither"},
@@ -544,6 +567,12 @@ struct Osm {
     lanelet(12, {0, -10}, {0, 10}, "<tag k='turn_direction' v='straight'/>" + rules);
     lanelet(13, {0, 10}, {0, 60});
   }
+  /// A sign of that code, as a member of a rule.
+  std::string sign(std::string const& code) {
+    int const id = way({0, -90}, {1, -90});
+    others.insert(others.rfind("</way>"), "<tag k='type' v='traffic_sign'/><tag k='subtype' v='" + code + "'/>");
+    return "<member type='way' role='refers' ref='" + std::to_string(id) + "'/>";
+  }
   void rule(int id, std::string const& subtype, std::string const& members) {
     others += "<relation id='" + std::to_string(id) + "'>" + members +
               "<tag k='type' v='regulatory_element'/><tag k='subtype' v='" + subtype + "'/></relation>\n";
@@ -575,6 +604,112 @@ TEST_CASE("right of way between approaches and ways inside a junction holds for 
   }
 }
 
+TEST_CASE("right of way with a stop sign makes those that yield stop") {
+  for (std::string const code : {"de206", "de205", "us"}) {
+    Osm osm;
+    osm.crossing();
+    bool const is_inside = code == "us";  // and R1-1
+    osm.rule(30, "right_of_way",
+             member("right_of_way", 1) + member("yield", 11) + osm.sign(is_inside ? "usr1-1" : code));
+    if (!is_inside) {  // else both approaches lead to ways inside
+      for (auto at = osm.others.find("turn_direction"); at != std::string::npos; at = osm.others.find("turn_direction"))
+        osm.others.replace(at, 14, "direction");
+    }
+    auto const made = osm.map();
+    auto const& signals = lane_of(made, 11).signals;
+    REQUIRE(signals.size() == 1);
+    CHECK(signals[0].kind == (code == "de205" ? cambium::map::SignalKind::give_way : cambium::map::SignalKind::stop));
+  }
+}
+
+TEST_CASE("speed signs and signs without effect that a rule of signs names are findings") {
+  Osm osm;
+  osm.crossing();
+  osm.rule(30, "traffic_sign", osm.sign("de274-50") + osm.sign("de267"));
+  auto const text = text_of(osm.map().diagnostics);
+  CHECK(text.find("its sign de274-50 is a speed, which only an element of the subtype speed_limit sets") !=
+        std::string::npos);
+  CHECK(text.find("signs de267 have no effect: they do not say who goes first: 1") != std::string::npos);
+}
+
+TEST_CASE("a node that no lanelet has does not decide where the others lie") {
+  Osm osm;
+  osm.lanelet(1, {0, 0}, {50, 0});
+  osm.nodes += "<node id='5' lat='0' lon='0'/>";
+  auto const made = osm.map();
+  CHECK(lane_of(made, 1).length() == doctest::Approx(50.0));
+  CHECK_MESSAGE(made.diagnostics.empty(), text_of(made.diagnostics));
+}
+
+TEST_CASE("walkways go both ways unless they say otherwise") {
+  for (bool const one_way : {false, true}) {
+    Osm osm;
+    osm.lanelet(1, {0, 0}, {50, 0});
+    osm.lanelet(2, {100, 0}, {50, 0});
+    for (auto at = osm.others.find("v='road'"); at != std::string::npos; at = osm.others.find("v='road'"))
+      osm.others.replace(at, 8, one_way ? "v='walkway'/><tag k='one_way:pedestrian' v='yes'" : "v='walkway'");
+    auto const made = osm.map();
+    auto const& first = lane_of(made, 1);
+    if (one_way) {
+      CHECK(first.successors.empty());
+    } else {
+      REQUIRE(first.successors.size() == 1);
+      CHECK(first.successors[0] == lane_of(made, 2).opposite);
+    }
+  }
+}
+
+TEST_CASE("of several that claim a neighbour, the one that it names has it") {
+  auto one = straight(1, {0, 0}, {50, 0}), two = straight(2, {0, -3.5}, {50, -3.5}),
+       far = straight(3, {0, -3.6}, {50, -3.6});
+  far.left_neighbor = 1;
+  one.right_neighbor = 2;
+  two.left_neighbor = 1;
+  auto const made = build_lanelet_map({far, one, two});
+  CHECK(lane_of(made, 1).right_neighbor == made.lanes.at(2));
+  CHECK(text_of(made.diagnostics).find("lanelet 3: its neighbour 1 has another one on that side") != std::string::npos);
+}
+
+TEST_CASE("lanes are cut into lanelets where limits and permitted changes change, and priorities are kept") {
+  std::string const lane_text =
+      "<lane id=\"ID\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/>"
+      "<roadMark sOffset=\"0\" type=\"broken\" weight=\"standard\" color=\"standard\" width=\"0.1\"/>"
+      "<roadMark sOffset=\"60\" type=\"solid\" weight=\"standard\" color=\"standard\" width=\"0.1\" "
+      "laneChange=\"none\"/>"
+      "<speed sOffset=\"0\" max=\"10\"/><speed sOffset=\"30\" max=\"20\"/></lane>";
+  std::string lanes;
+  for (std::string const id : {"-1", "-2"}) {
+    auto text = lane_text;
+    lanes += text.replace(text.find("ID"), 2, id);
+  }
+  auto const map = cambium::parse_opendrive(
+                       "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road name=\"\" length=\"100\" id=\"1\" "
+                       "junction=\"-1\"><planView><geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"100\"><line/>"
+                       "</geometry></planView><lanes><laneSection s=\"0\"><center><lane id=\"0\" type=\"none\"/>"
+                       "</center><right>" +
+                       lanes + "</right></laneSection></lanes></road></OpenDRIVE>")
+                       .map;
+  auto const lanelets = cambium::map::lanelets_of(*map, 1);
+  REQUIRE(lanelets.size() == 6);
+  auto const made = build_lanelet_map(lanelets);
+  CHECK_MESSAGE(made.diagnostics.empty(), text_of(made.diagnostics));
+  for (auto const& lane : map->lanes())
+    for (double const s : {15.0, 45.0, 80.0}) {
+      auto const p = lane.path.pose(s).position();
+      auto const copy = made.map->nearest_lane({p.x(), p.y(), 0.0}, 0.5);
+      REQUIRE(copy);
+      auto const& part = made.map->lane(copy->lane);
+      CHECK(part.speed_limit_at(copy->s) == lane.speed_limit_at(s));
+      CHECK(part.may_change_left(copy->s) == lane.may_change_left(s));
+      CHECK(part.may_change_right(copy->s) == lane.may_change_right(s));
+      CHECK(part.successors.empty() == (s == 80.0));
+    }
+  std::size_t priorities = 0;
+  for (auto const& lanelet : cambium::map::lanelets_of(*support::own_map("roundabout.xodr")))
+    priorities += lanelet.goes_before.size();
+  CHECK(priorities > 0);
+}
+
 TEST_CASE("signs for ways inside a junction stand before it, lights with a line before it at their begin") {
   Osm osm;
   osm.crossing();
@@ -602,9 +737,9 @@ TEST_CASE("a map lies where its lanelets do, on the antimeridian, too") {
   }
   Osm mixed;
   mixed.lanelet(1, {-200, 0}, {200, 0});
-  mixed.nodes += "<node id='5' lat='0' lon='0'/><node id='6' lat='0' lon='0'/>";
+  mixed.nodes.replace(mixed.nodes.find("local_x"), 7, "other_x");
   std::vector<Diagnostic> found;
   auto const text = "<osm>\n" + mixed.nodes + mixed.others + "</osm>";
   (void)cambium::map::read_lanelet2(text, {}, "a.osm", found);
-  CHECK(text_of(found).find("node 5 has no local_x and local_y") != std::string::npos);
+  CHECK(text_of(found).find("node 1001 has no local_x and local_y") != std::string::npos);
 }

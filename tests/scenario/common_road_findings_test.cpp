@@ -135,7 +135,7 @@ TEST_CASE("a light whose cycle is odd is a finding") {
     auto const traffic = read(lanelet(1, 0, ref(8)) + light(8, rest));
     CHECK_MESSAGE(has(traffic, words), words, "\n", text_of(traffic.diagnostics));
   };
-  found(cycle({{100, "purple"}, {10, "green"}}), "\"purple\" is no color");
+  found(cycle({{100, "purple"}, {10, "green"}}), "\"purple\" is no colour");
   found(cycle({{-5, "green"}, {10, "red"}}), "its duration -5 is not above 0");
   found(cycle({{0, "green"}, {10, "red"}}), "its duration 0 is not above 0");
   found(cycle({}), "neither green nor red; the light is off");
@@ -186,6 +186,73 @@ TEST_CASE("lanelets for others than vehicles are no driving lanes") {
   CHECK(type("<userOneWay>vehicle</userOneWay><userOneWay>bicycle</userOneWay>") == LaneType::driving);
   CHECK(type("<userOneWay>vehicle</userOneWay><userBidirectional>bus</userBidirectional>") == LaneType::driving);
   CHECK(has(read(lanelet(1, 0, "<laneletType>nonsense</laneletType>")), "the type \"nonsense\" is not known"));
+  CHECK(type("<userOneWay>bus</userOneWay><userOneWay>taxi</userOneWay>") == LaneType::bus);
+  CHECK(type("<userOneWay>bicycle</userOneWay><userOneWay>taxi</userOneWay>") == LaneType::taxi);
+  CHECK(type("<userOneWay>priorityVehicle</userOneWay>") == LaneType::restricted);
+  CHECK(type("<userOneWay>motorcycle</userOneWay>") == LaneType::driving);
+  CHECK(has(read(lanelet(1, 0, "<userOneWay>cra</userOneWay>")), "the user \"cra\" is not known"));
+}
+
+TEST_CASE("what is not read is a finding, once") {
+  auto const state = [](std::string const& more) {
+    return "<position><point><x>10</x><y>-1</y></point></position><orientation><exact>0</exact></orientation>"
+           "<time><exact>0</exact></time><velocity><exact>0</exact></velocity>" +
+           more;
+  };
+  auto const traffic = read(
+      lanelet(1, 0, "<sucessor ref='2'/><adjacentLeft ref='2' drivingDir='opposite'/>") +
+      lanelet(2, 3.5,
+              "<adjacentRight ref='1' drivingDir='oposite'/><stopLine><lineMarking>solid</lineMarking>"
+              "</stopLine><trafficSignRef ref='5'/>") +
+      lanelet(3, -10, "<stopLine><lineMarking>solid</lineMarking></stopLine>") +
+      "<trafficSign id='5'><trafficSignElement><trafficSignID>310</trafficSignID></trafficSignElement></trafficSign>"
+      "<intersection id='9'><incoming id='10'><incomingLanelet ref='1'/><successorsLeft ref='77'/><isLeftOf ref='11'"
+      "/></incoming><crossing><crossingLanelet ref='3'/></crossing></intersection>"
+      "<staticObstacle id='12'><type>roadBoundary</type><shape><rectangle><length>4</length><width>2</width>"
+      "</rectangle></shape><initialState>" +
+      state("<yawRate><exact>0</exact></yawRate>") + "</initialState><initialSignalState/></staticObstacle>");
+  for (char const* words :
+       {"elements <sucessor> of lanelets are not read", "neighbours that are driven the other way are not read",
+        "its drivingDir \"oposite\" is neither same nor opposite", "stop lines without a sign or light have no effect",
+        "signs of the number 310 have no effect", "who comes from the left of whom is read from the geometry",
+        "the crossings of intersections are not read", "the way through it, lanelet 77, is not there",
+        "obstacles of the type \"roadBoundary\" count as others", "elements <yawRate> of states are not read",
+        "elements <initialSignalState> of obstacles are not read"})
+    CHECK_MESSAGE(has(traffic, words), words, "\n", text_of(traffic.diagnostics));
+}
+
+TEST_CASE("occupancies lie in the map's frame, and only rectangles say where they head") {
+  auto const rectangle = [](double x, double y, double turn) {
+    return "<rectangle><length>4</length><width>2</width><orientation>" + std::to_string(turn) +
+           "</orientation><center><x>" + std::to_string(x) + "</x><y>" + std::to_string(y) +
+           "</y></center></rectangle>";
+  };
+  auto const occupancy = [](int step, std::string const& shape) {
+    return "<occupancy><shape>" + shape + "</shape><time><exact>" + std::to_string(step) +
+           "</exact></time></occupancy>";
+  };
+  auto const obstacle = [](std::string const& shape, std::string const& set) {
+    return read(lanelet(1, 0) + "<dynamicObstacle id='12'><type>car</type><shape>" + shape +
+                "</shape><initialState><position><point><x>0</x><y>-1</y></point></position><orientation><exact>0.1"
+                "</exact></orientation><time><exact>0</exact></time><velocity><exact>10</exact></velocity>"
+                "</initialState><occupancySet>" +
+                set + "</occupancySet></dynamicObstacle>")
+        .track(12)
+        .states;
+  };
+  auto const turned =
+      obstacle(rectangle(1.5, 0, 0), occupancy(1, rectangle(2.5, -0.9, 0)) + occupancy(2, rectangle(3.5, -0.9, 0.2)));
+  REQUIRE(turned.size() == 3);
+  CHECK(turned[0].x == doctest::Approx(1.5 * std::cos(0.1)));
+  CHECK(turned[1].x == doctest::Approx(2.5));
+  CHECK(turned[1].heading == 0.0);
+  CHECK(turned[2].x == doctest::Approx(3.5));
+  CHECK(turned[2].heading == doctest::Approx(0.2));
+  CHECK(turned[2].speed == doctest::Approx(10.0));
+  std::string const circle = "<circle><radius>1</radius><center><x>0</x><y>0</y></center></circle>";
+  auto const round = obstacle("<circle><radius>1</radius></circle>", occupancy(1, circle));
+  REQUIRE(round.size() == 2);
+  CHECK(round[1].heading == doctest::Approx(0.5 * geometry::pi));
 }
 
 TEST_CASE("values that cannot be meant, links given once and ids given twice are findings") {
@@ -199,6 +266,8 @@ TEST_CASE("values that cannot be meant, links given once and ids given twice are
   for (std::string const word : {"-4", "abc"})
     CHECK(has(read(lanelet(1, 0, "<speedLimit>" + word + "</speedLimit>")), "\"" + word + "\" is no speed"));
   CHECK(has(read(lanelet(1, 0, "<stopLine><point><x>40</x><y>0</y></point></stopLine>")), "it has 1 points, not two"));
+  CHECK(read(lanelet(1, 0, ref(8)) + light(8, cycle({{10, "red"}}) + "<active>0</active>")).lights.at(0) ==
+        map::LightPlan{});
 
   auto const links = read(lanelet(1, 0, "<successor ref='2'/>") + lanelet(2, 0, "", 50.0) +
                           lanelet(3, 0, "<predecessor ref='2'/>", 100.0) +

@@ -65,16 +65,20 @@ TEST_CASE("lanelets of CommonRoad follow each other and lie beside each other as
 TEST_CASE(
     "a lane that forks inside an intersection has all successors; lanes in a tight bend turn as their road does") {
   auto const fork = corpus::find("cases/cr_fork_inside_intersection.xml"),
+             tee = corpus::find("cases/cr_tight_tee_short.xml"),
              bend = corpus::find("cases/cr_six_lanes_bend_right_02.xml");
-  if (!fork || !bend) return;
-  auto const forked = load_common_road(fork->string());
-  std::size_t links = 0, named = 0;
-  for (auto const& lanelet : forked.lanelets) {
-    named += lanelet.successors.size();
-    links += forked.map->lane(forked.lanes.at(lanelet.id)).successors.size();
+  if (!fork || !tee || !bend) return;
+  for (auto const& file : {*fork, *tee}) {
+    CAPTURE(file.string());
+    auto const traffic = load_common_road(file.string());
+    std::size_t links = 0, named = 0;
+    for (auto const& lanelet : traffic.lanelets) {
+      named += lanelet.successors.size();
+      links += traffic.map->lane(traffic.lanes.at(lanelet.id)).successors.size();
+    }
+    CHECK(links == named);
+    CHECK(traffic.diagnostics.empty());
   }
-  CHECK(links == named);
-  CHECK(forked.diagnostics.empty());
   auto const bent = load_common_road(bend->string());
   CHECK(bent.map->lanes().size() == 6);
   double road = 0.0;

@@ -243,6 +243,14 @@ TEST_CASE("an id that comes again after a long time is another road user") {
   CHECK(traffic.track(5).at(300.0).x == doctest::Approx(400.0));
   CHECK(text_of(traffic.diagnostics).find("from here on it is another one, track 5") != std::string::npos);
   CHECK(read_tracks(text, {.longest_gap = 1000.0}).tracks.size() == 2);
+  std::string torn = "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy,psi_rad,length,width\n";
+  for (int k = 0; k < 20'000; ++k)
+    torn += "3," + std::to_string(k) + "," + std::to_string(100'000 * k) + ",car,0,0,0,0,0,4,2\n";
+  auto const parts = read_tracks(torn);
+  CHECK(parts.tracks.size() == 20'000);
+  CHECK(parts.tracks.back().begin() == doctest::Approx(1'999'900.0));
+  CHECK(parts.diagnostics.size() < 10);
+  CHECK(text_of(parts.diagnostics).find("it has 19999 gaps of more than") != std::string::npos);
 }
 
 TEST_CASE("another road user with an id seen before has its own size and type") {
@@ -558,6 +566,31 @@ TEST_CASE("a replaced agent's goal is where its track ends, and its route the la
   while (world.time() < 20.0 && !world.reached_goal(AgentId{7})) REQUIRE(world.step(0.2));
   CHECK(world.reached_goal(AgentId{7}));
   CHECK(world.state(AgentId{7}).x < 101.0);
+}
+
+TEST_CASE("the route of a track on lanelets counts lanes side by side once") {
+  std::vector<map::Lanelet> lanelets;
+  for (auto const& [id, x, y] : {std::tuple{1, 0.0, 0.0}, {2, 0.0, -3.5}, {3, 100.0, 0.0}})
+    lanelets.push_back(
+        {.id = id, .left = {{x, y + 1.75}, {x + 100, y + 1.75}}, .right = {{x, y - 1.75}, {x + 100, y - 1.75}}});
+  lanelets[0].successors = {3};
+  lanelets[0].right_neighbor = 2;
+  lanelets[1].left_neighbor = 1;
+  lanelets[2].predecessors = {1};
+  RecordedTraffic traffic = cars();
+  auto made = map::build_lanelet_map(lanelets);
+  traffic.map = made.map;
+  traffic.tracks.resize(1);
+  auto& track = traffic.tracks[0];
+  track.states.clear();
+  for (int k = 0; k <= 150; ++k) track.states.push_back({0.1 * k, 5.0 + k, k > 30 && k < 60 ? -3.5 : 0.0, 0.0, 10.0});
+  auto const recorded = recorded_scenario<Sim>(traffic, {.ego = track.id}, [](Track const&) {
+    return std::optional<Sim::Behavior>(IdmClassic{.desired_speed = 10.0});
+  });
+  auto const& route = recorded.scenario.agents.at(0).route;
+  REQUIRE(route);
+  CHECK(route->lanes == std::vector{made.lanes.at(1), made.lanes.at(3)});
+  CHECK(route->length == doctest::Approx(200.0).epsilon(0.01));
 }
 
 TEST_CASE("a vehicle that does not keep to the lanes gets a way of its own, and is replayed all the same") {

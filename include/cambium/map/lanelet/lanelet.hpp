@@ -23,7 +23,7 @@ struct LaneletSignal {
   friend bool operator==(LaneletSignal const&, LaneletSignal const&) = default;
 };
 
-/// A piece of a lane. `left` and `right` run in the direction of travel; what a neighbour is travels the same way.
+/// A piece of a lane. `left` and `right` run in the direction of travel; neighbours run the same way.
 struct Lanelet {
   std::int64_t id = 0;
   std::vector<geometry::Point> left{}, right{};         ///< at least two points each, map frame [m]

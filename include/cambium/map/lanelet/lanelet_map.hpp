@@ -43,7 +43,8 @@ struct LaneletMap {
 [[nodiscard]] std::optional<std::array<geometry::Point, 2>> line_before_end(Lanelet const& lanelet, double distance);
 
 /// The drivable lanes of a map as lanelets, whose ids are those of the lanes plus `first_id`: what a writer of lanelet
-/// formats needs. Linear in the map.
+/// formats needs. The lanes of a section are cut, to a metre, where their limits or permitted changes change; the parts
+/// behind the first have ids beyond those of all lanes. O(lanes log points).
 [[nodiscard]] std::vector<Lanelet> lanelets_of(Map const& map, std::int64_t first_id = 1);
 
 }  // namespace cambium::map

@@ -23,6 +23,7 @@
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
 #include "cambium/map/lanelet/detail/lanelet_network.hpp"
+#include "cambium/map/lanelet/detail/lanes_as_lanelets.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/opendrive/document.hpp"
@@ -223,7 +224,7 @@ class LaneletMapMaker {
     if (k == LaneletNetwork::nobody || !is_valid(lanes_[k])) return;
     auto const &left = network_.lanelets[i], &right = network_.lanelets[k];
     auto &own = lane_of({i}), &other = lane_of({k});
-    if (own.type == LaneType::bus || other.type == LaneType::bus)
+    if (own.drivable() != other.drivable() && (own.type == LaneType::bus || other.type == LaneType::bus))
       return network_.report(
           Severity::info, i,
           "it or its neighbour " + std::to_string(right.id) + " is for buses; nobody changes lanes between them");
@@ -295,43 +296,7 @@ CAMBIUM_COLD std::optional<std::array<geometry::Point, 2>> line_before_end(Lanel
 }
 
 CAMBIUM_COLD std::vector<Lanelet> lanelets_of(Map const& map, std::int64_t first_id) {
-  std::vector<Lanelet> result;
-  auto const id_of = [first_id](LaneId lane) { return first_id + static_cast<std::int64_t>(index_of(lane)); };
-  auto const is_kept = [&map](LaneId id) {
-    return is_valid(id) && map.lane(id).drivable() && !map.lane(id).left.empty() && !map.lane(id).right.empty();
-  };
-  bool const has_heights = std::any_of(map.roads().begin(), map.roads().end(), [](Road const& road) {
-    auto const is_level = [&](double u) { return road.elevation.value(u * road.length) == 0.0; };
-    return !is_level(0.0) || !is_level(0.5) || !is_level(1.0);
-  });
-  for (auto const& lane : map.lanes()) {
-    if (!is_kept(lane.id)) continue;
-    Lanelet lanelet{.id = id_of(lane.id), .left = lane.left.points(), .right = lane.right.points()};
-    auto const height = [&](geometry::Point const& p) {
-      return map.road(lane.road).elevation.value(lane.station_at(lane.path.project(p).s));
-    };
-    if (has_heights) {
-      for (auto const& p : lanelet.left) lanelet.left_heights.push_back(height(p));
-      for (auto const& p : lanelet.right) lanelet.right_heights.push_back(height(p));
-    }
-    for (auto const other : lane.successors)
-      if (is_kept(other)) lanelet.successors.push_back(id_of(other));
-    for (auto const other : lane.predecessors)
-      if (is_kept(other)) lanelet.predecessors.push_back(id_of(other));
-    if (is_kept(lane.left_neighbor)) lanelet.left_neighbor = id_of(lane.left_neighbor);
-    if (is_kept(lane.right_neighbor)) lanelet.right_neighbor = id_of(lane.right_neighbor);
-    lanelet.may_change_left = !is_valid(lane.left_neighbor) || !lane.left_changes.empty();
-    lanelet.may_change_right = !is_valid(lane.right_neighbor) || !lane.right_changes.empty();
-    lanelet.type = lane.type;
-    if (double const limit = lane.speed_limit_at(0.5 * lane.length()); std::isfinite(limit))
-      lanelet.speed_limit = limit;
-    lanelet.in_junction = is_valid(map.road(lane.road).junction);
-    for (auto const& signal : lane.signals)
-      lanelet.signals.push_back({signal.kind, lane.length() - signal.s,
-                                 is_valid(signal.light) ? map.lights()[index_of(signal.light)].name : ""});
-    result.push_back(std::move(lanelet));
-  }
-  return result;
+  return detail::LanesAsLanelets(map, first_id).make();
 }
 
 }  // namespace cambium::map

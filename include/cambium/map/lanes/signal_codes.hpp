@@ -63,7 +63,13 @@ enum class Arrow : std::uint8_t { none = 0, left = 1, straight = 2, right = 4 };
 struct SignalCode {
   std::string_view country, type, subtype;
   SignalMeaning meaning{};
-  bool has_arrow = false;  ///< the subtype says which, see `arrow_of`
+  bool has_arrow = false;  ///< the subtype says which
+};
+
+/// What a sign or light says, and the ways that it is for where it is an arrow light.
+struct SignalSense {
+  SignalMeaning meaning{};
+  Arrow arrow = Arrow::none;  ///< none: for all ways
 };
 
 /// The codes that are known, in lower case. Sources: the tables of signs and of bulbs of esmini (77028d8), CARLA's list
@@ -116,6 +122,12 @@ inline constexpr std::array signal_codes{
     SignalCode{"se", "c", "31", SignalMeaning::speed_limit},
     SignalCode{"cn", "jin", "", SignalMeaning::speed_limit},
     SignalCode{"cn", "shi", "", SignalMeaning::other},
+    SignalCode{"fr", "b14", "", SignalMeaning::speed_limit},
+    SignalCode{"be", "c43", "", SignalMeaning::speed_limit},
+    SignalCode{"hr", "b31", "", SignalMeaning::speed_limit},
+    SignalCode{"ar", "r15", "", SignalMeaning::speed_limit},
+    SignalCode{"ru", "3.24", "", SignalMeaning::speed_limit},
+    SignalCode{"gr", "\xCE\xA1-32", "", SignalMeaning::speed_limit},  // a capital rho
 };
 
 namespace detail {
@@ -140,18 +152,36 @@ namespace detail {
   return text;
 }
 
+/// The ways that an arrow light is for, by OpenDRIVE's subtypes (as esmini's table of bulbs has them).
+[[nodiscard]] constexpr Arrow arrow_of_subtype(std::string_view subtype) {
+  if (subtype == "10" || subtype == "60" || subtype == "80") return Arrow::left;  // half left, down left
+  if (subtype == "20" || subtype == "70" || subtype == "90") return Arrow::right;
+  if (subtype == "30") return Arrow::straight;
+  if (subtype == "40") return Arrow::straight | Arrow::left;
+  if (subtype == "50") return Arrow::straight | Arrow::right;
+  if (subtype == "100") return Arrow::left | Arrow::right;
+  return Arrow::none;
+}
+
 }  // namespace detail
 
-/// The row of a code as a file has it, in any spelling: "DEU" or "Germany" for the country, "1.000.001" for a number,
-/// "274-55" for a type with its subtype; a subtype of "-1" or "none" is none. Null where it is not known.
-[[nodiscard]] inline SignalCode const* find_signal_code(std::string_view country, std::string_view type,
-                                                        std::string_view subtype) {
+/// What a code says as a file has it, in any spelling: "DEU" or "Germany" for the country, "1.000.001" for a number,
+/// "274-55" for a type with its subtype; a subtype of "-1" or "none" is none. Nothing where it is not known.
+[[nodiscard]] inline std::optional<SignalSense> find_signal(std::string_view country, std::string_view type,
+                                                            std::string_view subtype) {
   // The words of ISO 3166 for the countries of the catalogue.
-  static constexpr std::array<std::array<std::string_view, 3>, 5> countries{{{"us", "usa", "united states"},
-                                                                             {"au", "aus", "australia"},
-                                                                             {"es", "esp", "spain"},
-                                                                             {"se", "swe", "sweden"},
-                                                                             {"cn", "chn", "china"}}};
+  static constexpr std::array<std::array<std::string_view, 3>, 12> countries{{{"us", "usa", "united states"},
+                                                                              {"us", "pri", "puerto rico"},
+                                                                              {"au", "aus", "australia"},
+                                                                              {"es", "esp", "spain"},
+                                                                              {"se", "swe", "sweden"},
+                                                                              {"cn", "chn", "china"},
+                                                                              {"fr", "fra", "france"},
+                                                                              {"be", "bel", "belgium"},
+                                                                              {"hr", "hrv", "croatia"},
+                                                                              {"ar", "arg", "argentina"},
+                                                                              {"ru", "rus", "russia"},
+                                                                              {"gr", "grc", "greece"}}};
   auto const word = detail::lower_case(country);
   std::string_view where;
   for (auto const& words : countries)
@@ -160,23 +190,11 @@ namespace detail {
   auto const part = detail::lower_case(subtype);
   for (auto const of : {where, std::string_view()})
     for (auto const& code : signal_codes)
-      if (code.country == of && code.type == what && (code.subtype.empty() || code.subtype == part)) return &code;
+      if (code.country == of && code.type == what && (code.subtype.empty() || code.subtype == part))
+        return SignalSense{code.meaning, code.has_arrow ? detail::arrow_of_subtype(part) : Arrow::none};
   auto const dash = what.find('-');
-  return dash == std::string::npos || dash == 0
-             ? nullptr
-             : find_signal_code(country, what.substr(0, dash), what.substr(dash + 1));
-}
-
-/// The ways that an arrow light is for, by OpenDRIVE's subtypes (as esmini's table of bulbs has them).
-[[nodiscard]] constexpr Arrow arrow_of(SignalCode const& code, std::string_view subtype) {
-  if (!code.has_arrow) return Arrow::none;
-  if (subtype == "10" || subtype == "60" || subtype == "80") return Arrow::left;  // half left, down left
-  if (subtype == "20" || subtype == "70" || subtype == "90") return Arrow::right;
-  if (subtype == "30") return Arrow::straight;
-  if (subtype == "40") return Arrow::straight | Arrow::left;
-  if (subtype == "50") return Arrow::straight | Arrow::right;
-  if (subtype == "100") return Arrow::left | Arrow::right;
-  return Arrow::none;
+  if (dash == std::string::npos || dash == 0) return std::nullopt;
+  return find_signal(country, what.substr(0, dash), what.substr(dash + 1));
 }
 
 }  // namespace cambium::map

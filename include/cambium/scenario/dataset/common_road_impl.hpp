@@ -74,18 +74,20 @@ class CommonRoadReader : private CommonRoadLanes {
       read_environment(node);
     else if (name == "planningProblem")
       read_problem(node);
-    else if (std::find(std::begin(known), std::end(known), name) == std::end(known) &&
-             unknown_.insert(std::string(name)).second)
-      note(node, "elements of this kind are not read");
+    else if (std::find(std::begin(known), std::end(known), name) == std::end(known))
+      note_once(node, "elements <" + std::string(name) + "> are not read");
   }
 
   void read_obstacle(Node node, bool stands) {
     auto const id = id_of(node);
     if (!id) return;
     auto const name = "obstacle " + std::to_string(*id);
-    Track track{.id = *id, .type = TrackType::other, .stands = stands};
-    for (auto const& [word, type] : common_road_types)
-      if (word == text_of(xml::find_child(node, "type"))) track.type = type;
+    Track track{.id = *id, .type = type_of(xml::find_child(node, "type")), .stands = stands};
+    xml::for_each_child(node, [&](Node child, std::string_view part) {
+      constexpr std::string_view read[] = {"role", "type", "shape", "initialState", "trajectory", "occupancySet"};
+      if (std::find(std::begin(read), std::end(read), part) == std::end(read))
+        note_once(child, "elements <" + std::string(part) + "> of obstacles are not read");
+    });
     auto const shape = shape_of(xml::find_child(node, "shape"));
     auto const initial = state_of(xml::find_child(node, "initialState"), 0.0);
     if (!shape || !initial)
@@ -94,12 +96,21 @@ class CommonRoadReader : private CommonRoadLanes {
     track.width = shape->width;
     if (!is_body(*shape)) return warn(node, name + " is not up to 100 m long and wide; it was left out");
     track.states.push_back(*initial);
-    if (!stands) read_motion(node, track);
+    if (!stands) read_trajectory(node, track);
+    for (auto& state : track.states) shift(state, *shape);
+    if (!stands) read_occupancies(node, track);
     if (!shape->is_rectangle) track.outline = outline_from_middle(node, *shape);
     if (!stands && !track.outline.empty()) note(node, name + " drives as the rectangle around it");
-    for (auto& state : track.states) shift(state, *shape);
     if (!ids_.insert(*id).second) return warn(node, name + " is there already; the second one was left out");
     traffic_.tracks.push_back(std::move(track));
+  }
+
+  [[nodiscard]] TrackType type_of(Node node) {
+    if (!node) return TrackType::other;
+    for (auto const& [word, type] : common_road_types)
+      if (word == text_of(node)) return type;
+    note_once(node, "obstacles of the type \"" + std::string(text_of(node)) + "\" count as others");
+    return TrackType::other;
   }
 
   /// The corners of a polygon or circle, whose own heading is 0; none, with a finding, where they are no outline.
@@ -129,31 +140,40 @@ class CommonRoadReader : private CommonRoadLanes {
     if (shape.heading != 0.0) state.heading += shape.heading;
   }
 
-  void read_motion(Node node, Track& track) {
-    auto const add = [&](Node at, std::optional<State> const& state) {
-      if (!state)
-        warn(at, "a state of obstacle " + std::to_string(track.id) + " has no position or time; it was left out");
-      else if (!(state->time > track.states.back().time))
-        warn(at,
-             "a state of obstacle " + std::to_string(track.id) + " is not later than the one before; it was left out");
-      else
-        track.states.push_back(*state);
-    };
+  void add_state(Node at, Track& track, std::optional<State> const& state) {
+    auto const name = "a state of obstacle " + std::to_string(track.id);
+    if (!state)
+      warn(at, name + " has no position or time; it was left out");
+    else if (!(state->time > track.states.back().time))
+      warn(at, name + " is not later than the one before; it was left out");
+    else
+      track.states.push_back(*state);
+  }
+
+  void read_trajectory(Node node, Track& track) {
     xml::for_each_child(xml::find_child(node, "trajectory"), "state",
-                        [&](Node child) { add(child, state_of(child, track.states.back().heading)); });
+                        [&](Node child) { add_state(child, track, state_of(child, track.states.back().heading)); });
+  }
+
+  /// Shapes in the map's frame, unlike those of trajectories; other shapes than rectangles head where they move.
+  void read_occupancies(Node node, Track& track) {
     auto const set = xml::find_child(node, "occupancySet");
     if (set) note(set, "the occupancies of obstacle " + std::to_string(track.id) + " became places: their middles");
     xml::for_each_child(set, "occupancy", [&](Node child) {
       auto const shape = shape_of(xml::find_child(child, "shape"));
       auto const step = value(child, "time");
       if (step && *step * traffic_.time_step <= track.states.front().time) return;  // the initial state again
-      if (!shape || !step) return add(child, std::nullopt);
+      if (!shape || !step) return add_state(child, track, std::nullopt);
       State state = track.states.back();
       double const passed = *step * traffic_.time_step - state.time;
-      double const way = (shape->center - geometry::Point{state.x, state.y}).norm();
-      state = {*step * traffic_.time_step, shape->center.x(), shape->center.y(),
-               shape->heading != 0.0 ? shape->heading : state.heading, passed > 0.0 ? way / passed : 0.0};
-      add(child, state);
+      geometry::Point const way = shape->center - geometry::Point{state.x, state.y};
+      if (shape->is_rectangle)
+        state.heading = shape->heading;
+      else if (way.norm() > 0.1)
+        state.heading = std::atan2(way.y(), way.x());
+      state = {*step * traffic_.time_step, shape->center.x(), shape->center.y(), state.heading,
+               passed > 0.0 ? way.norm() / passed : 0.0};
+      add_state(child, track, state);
     });
   }
 
@@ -248,7 +268,6 @@ class CommonRoadReader : private CommonRoadLanes {
   }
 
   std::set<Id> ids_;  ///< of the obstacles
-  std::set<std::string> unknown_;
 };
 
 }  // namespace detail

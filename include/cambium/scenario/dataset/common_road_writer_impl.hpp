@@ -75,7 +75,8 @@ class CommonRoadWriter {
     auto const where = traffic_.name + ": lanelet " + std::to_string(lanelet.id);
     if (!used_.insert(lanelet.id).second) throw Error(where, "there is another one of that id", "give each its own");
     if (!lanelet.goes_before.empty())
-      throw Error(where, "CommonRoad cannot say which lanelets it goes before", "clear goes_before, or give it a sign");
+      throw Error(where, "CommonRoad cannot say which lanelets it goes before",
+                  "give RecordedTraffic::lanelets (such as map::lanelets_of) with signs and without goes_before");
     for (auto const& signal : lanelet.signals)
       if (std::abs(signal.before_end - lanelet.signals.front().before_end) > 1e-3)
         throw Error(where, "its signals are at several places, and CommonRoad has one stop line for a lanelet",

@@ -48,7 +48,7 @@ class LaneMatcher {
     auto& lanes = route.lanes;
     for (auto const id : lanes_) {
       auto const& lane = map_.lane(id);
-      // Within a section only where the track came in counts, and where it went.
+      // Of lanes side by side only where the track came in counts, and where it went.
       while (lanes.size() > 1 && beside(lanes.back(), id) && beside(lanes[lanes.size() - 2], id)) lanes.pop_back();
       if (!lanes.empty() && lanes.back() == id) continue;
       // At a fork the wrong branch may seem nearer at first.
@@ -67,9 +67,14 @@ class LaneMatcher {
   }
 
  private:
+  /// Whether the lanes lie side by side: in a section of a road, or as neighbours of one another, as lanelets do.
   [[nodiscard]] bool beside(LaneId a, LaneId b) const {
     auto const &one = map_.lane(a), &other = map_.lane(b);
-    return one.road == other.road && one.section == other.section && one.along_road == other.along_road;
+    if (one.road == other.road && one.section == other.section) return one.along_road == other.along_road;
+    for (auto const side : {&map::Lane::left_neighbor, &map::Lane::right_neighbor})
+      for (auto at = one.*side; is_valid(at) && at != a; at = map_.lane(at).*side)
+        if (at == b) return true;
+    return false;
   }
   [[nodiscard]] bool follows(LaneId a, LaneId b) const {
     auto const& lane = map_.lane(a);

@@ -209,19 +209,33 @@ class TrackTableReader {
     constexpr auto highest = std::numeric_limits<std::int64_t>::max() / 2;
     for (auto const& read : read_)
       if (read.track.id < highest) unused = std::max(unused, read.track.id + 1);
-    for (std::size_t i = 0; i < read_.size(); ++i) {  // those that are added, too
+    for (std::size_t i = 0, count = read_.size(); i < count; ++i) {
       stable_sort(read_[i].rows, [](Row const& row) { return row.state.time; });
-      auto const& rows = read_[i].rows;
-      std::size_t k = 1;
-      while (k < rows.size() && rows[k].state.time - rows[k - 1].state.time <= table_.longest_gap) ++k;
-      if (k >= rows.size()) continue;
-      report(Severity::warning, rows[k].line, read_[i].track,
-             "nothing is recorded for " + rounded_text(rows[k].state.time - rows[k - 1].state.time) +
-                 " s before this row; from here on it is another one, track " + std::to_string(unused));
-      Read behind{read_[i].track, {rows.begin() + static_cast<std::ptrdiff_t>(k), rows.end()}};
-      behind.track.id = unused++;
-      read_[i].rows.resize(k);
-      read_.push_back(std::move(behind));
+      auto rows = std::move(read_[i].rows);
+      std::size_t begin = 0, gaps = 0;
+      for (std::size_t k = 1; k <= rows.size(); ++k) {
+        double const gap =
+            k < rows.size() ? rows[k].state.time - rows[k - 1].state.time : std::numeric_limits<double>::infinity();
+        if (!(gap > table_.longest_gap)) continue;
+        std::vector<Row> part(rows.begin() + static_cast<std::ptrdiff_t>(begin),
+                              rows.begin() + static_cast<std::ptrdiff_t>(k));
+        if (begin == 0) {
+          read_[i].rows = std::move(part);
+        } else {
+          read_.push_back({read_[i].track, std::move(part)});
+          read_.back().track.id = unused++;
+        }
+        begin = k;
+        if (k == rows.size()) break;
+        if (gaps++ == 0)
+          report(Severity::warning, rows[k].line, read_[i].track,
+                 "nothing is recorded for " + rounded_text(gap) +
+                     " s before this row; from here on it is another one, track " + std::to_string(unused));
+      }
+      if (gaps > 1)
+        report(Severity::warning, 0, read_[i].track,
+               "it has " + std::to_string(gaps) + " gaps of more than " + rounded_text(table_.longest_gap) +
+                   " s, each the end of a track: is the unit of time right?");
     }
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
@@ -74,18 +75,10 @@ class LaneSignals {
 
   /// `place` says where it counts: the signal itself, or a reference to it.
   void add(std::size_t road, Signal const& signal, Signal const& place) {
-    auto const* const code = find_signal_code(attribute(signal, "country"), signal.type, attribute(signal, "subtype"));
-    if (code == nullptr) {
-      if (&signal == &place && !signal.type.empty() && signal.type != "-1" && signal.type != "none")
-        count("signals of type " + signal.type + " of country \"" + std::string(attribute(signal, "country")) +
-                  "\" are not known",
-              signal);
-      return;
-    }
-    auto const kind = kind_of(code->meaning);
+    auto const sense = find_signal(attribute(signal, "country"), signal.type, attribute(signal, "subtype"));
+    auto const kind = sense ? kind_of(sense->meaning) : std::nullopt;
     if (!kind) {
-      if (code->meaning == SignalMeaning::speed_limit && &signal == &place)
-        count("signs that limit the speed do not count; the limits of roads and lanes do", signal, Severity::info);
+      if (&signal == &place) count_unused(signal, sense);
       return;
     }
     auto& is_given = given_[&signal];
@@ -94,17 +87,21 @@ class LaneSignals {
                                                  [](auto const& v) { return v.from_lane == 0 && v.to_lane == 0; });
     if (is_place_only) return;
     bool against_way = true, found = false;
-    for (auto const id : of_road_[road]) {
-      auto& lane = lanes_[index_of(id)];
-      auto const way = lane.along_road ? opendrive::Orientation::along : opendrive::Orientation::against;
-      bool const fits = place.orientation == opendrive::Orientation::both || place.orientation == way;
-      if (!lane.drivable() || !holds(lane, place) || !(place.validities.empty() ? fits : is_valid_for(lane, place)))
-        continue;
-      found = true;
-      against_way = against_way && !fits;
-      if (!give(lane, lane.position_at(place.s), *kind, *code, signal))
-        report(signal, road,
-               "no way behind lane " + std::to_string(lane.number) + " turns as its arrow says; it is left out there");
+    for (double const rounding : {0.0, 0.5}) {  // [m] by which it may stand beyond the end of a section
+      for (auto const id : of_road_[road]) {
+        auto& lane = lanes_[index_of(id)];
+        bool const fits = place.orientation == opendrive::Orientation::both || place.orientation == way_of(lane);
+        if (!lane.drivable() || !holds(lane, place, rounding) ||
+            !(place.validities.empty() ? fits : is_valid_for(lane, place)))
+          continue;
+        found = true;
+        against_way = against_way && !fits;
+        if (!give(lane, lane.position_at(place.s), *kind, *sense, signal))
+          report(
+              signal, road,
+              "no way behind lane " + std::to_string(lane.number) + " turns as its arrow says; it is left out there");
+      }
+      if (found) break;
     }
     is_given = is_given || found;
     if (found && against_way)
@@ -112,8 +109,26 @@ class LaneSignals {
             place);
   }
 
-  [[nodiscard]] static bool holds(Lane const& lane, Signal const& place) {
-    return place.s >= lane.road_begin - 0.5 && place.s <= lane.road_end + 0.5;
+  /// A signal that is neither a sign nor a light for lanes.
+  void count_unused(Signal const& signal, std::optional<SignalSense> const& sense) {
+    auto const name =
+        "signals of type " + signal.type + " of country \"" + std::string(attribute(signal, "country")) + "\"";
+    if (signal.type.empty() || signal.type == "-1" || signal.type == "none")
+      count("signals without a type have no effect", signal, Severity::info);
+    else if (!sense)
+      count(name + " are not known", signal);
+    else if (sense->meaning == SignalMeaning::speed_limit)
+      count("signs that limit the speed do not count; the limits of roads and lanes do", signal, Severity::info);
+    else
+      count(name + " have no effect: they do not say who goes first", signal, Severity::info);
+  }
+
+  [[nodiscard]] static opendrive::Orientation way_of(Lane const& lane) {
+    return lane.along_road ? opendrive::Orientation::along : opendrive::Orientation::against;
+  }
+  /// Whether a place lies in the section of a lane; its end belongs to the next one.
+  [[nodiscard]] static bool holds(Lane const& lane, Signal const& place, double rounding) {
+    return place.s >= lane.road_begin - rounding && place.s < lane.road_end + rounding;
   }
   [[nodiscard]] static bool is_valid_for(Lane const& lane, Signal const& place) {
     return std::any_of(place.validities.begin(), place.validities.end(), [&](auto const& validity) {
@@ -124,13 +139,13 @@ class LaneSignals {
 
   /// An arrow light is for the ways that turn so where the lane forks; where it does not, for the lane. Whether there
   /// is such a way.
-  bool give(Lane& lane, double s, SignalKind kind, SignalCode const& code, Signal const& signal) {
-    Arrow const arrow = arrow_of(code, attribute(signal, "subtype"));
+  bool give(Lane& lane, double s, SignalKind kind, SignalSense const& sense, Signal const& signal) {
+    Arrow const arrow = sense.arrow;
     auto const& ways = ways_behind(lane);
     auto const is_meant = [&](LaneId way) { return has(arrow, turn_of(way)); };
     auto const meant = std::count_if(ways.begin(), ways.end(), is_meant);
     if (arrow != Arrow::none && ways.size() > 1 && meant == 0) return false;
-    LightId const light = kind == SignalKind::light ? light_of(signal, code) : none<LightId>;
+    LightId const light = kind == SignalKind::light ? light_of(signal, sense) : none<LightId>;
     if (arrow == Arrow::none || ways.size() < 2 || meant == std::ssize(ways)) {
       lane.signals.push_back({s, kind, light});
       return true;
@@ -162,20 +177,20 @@ class LaneSignals {
 
   /// The light that a signal belongs to: its controller's; bulbs without one are a light with those of the same arrow
   /// at their place.
-  [[nodiscard]] LightId light_of(Signal const& signal, SignalCode const& code) {
+  [[nodiscard]] LightId light_of(Signal const& signal, SignalSense const& sense) {
     auto const controller = controllers_.find(signal.id);
     auto name = controller == controllers_.end() ? "signal " + signal.id : controller->second;
-    if (controller == controllers_.end() && code.meaning == SignalMeaning::bulb)
-      name = name_of_bulb(signal, code, name);
+    if (controller == controllers_.end() && sense.meaning == SignalMeaning::bulb)
+      name = name_of_bulb(signal, sense.arrow, name);
     auto const [known, is_new] = ids_.emplace(name, static_cast<LightId>(lights_.size()));
     if (is_new) lights_.push_back({known->second, name});
     return known->second;
   }
 
-  [[nodiscard]] std::string name_of_bulb(Signal const& signal, SignalCode const& code, std::string const& name) {
+  [[nodiscard]] std::string name_of_bulb(Signal const& signal, Arrow arrow, std::string const& name) {
     constexpr double reach = 0.5;  // [m] between the bulbs of a head, own choice
     double const t = cambium::detail::parse_number<double>(attribute(signal, "t")).value_or(0.0);
-    Bulb const bulb{signal.s, t, arrow_of(code, attribute(signal, "subtype")), name};
+    Bulb const bulb{signal.s, t, arrow, name};
     auto& others = bulbs_[roads_.at(&signal)];
     for (auto const& other : others)
       if (std::abs(other.s - bulb.s) <= reach && std::abs(other.t - t) <= reach && other.arrow == bulb.arrow)

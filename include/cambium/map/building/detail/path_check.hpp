@@ -61,6 +61,19 @@ struct SharpestTurn {
   return std::nullopt;
 }
 
+[[nodiscard]] inline bool has_no_width(SideWidths const& widths) { return widths.left + widths.right < 0.1; }
+
+/// Where a lane that has a width before and behind has none [m]; nothing where that is nowhere. Lanes may open and
+/// close at their ends.
+[[nodiscard]] inline std::optional<double> pinched_at(Lane const& lane) {
+  auto const& widths = lane.widths;
+  auto const first = std::find_if_not(widths.begin(), widths.end(), has_no_width);
+  auto const none = std::find_if(first, widths.end(), has_no_width);
+  if (std::find_if_not(none, widths.end(), has_no_width) == widths.end()) return std::nullopt;
+  auto const i = static_cast<std::size_t>(none - widths.begin());
+  return i < lane.path.segments().size() ? lane.path.segments()[i].s : lane.length();
+}
+
 /// Adds findings about lanes, with their names and lines in the file.
 struct LaneFindings {
   std::span<Road const> roads;
@@ -99,8 +112,10 @@ inline void report_paths(std::span<Lane const> lanes, LaneFindings const& findin
       report("its path runs backwards: the road bends more tightly than the lane lies from its reference line");
     else if (auto const s = moves_sideways(lane.path))
       report("its path moves sideways, " + place(*s) + ": no vehicle can follow it");
-    if (std::all_of(lane.widths.begin(), lane.widths.end(), [](SideWidths const& w) { return w.left + w.right < 0.1; }))
+    if (std::all_of(lane.widths.begin(), lane.widths.end(), has_no_width))
       report("the lane is drivable but has no width");
+    else if (auto const s = pinched_at(lane))
+      report("the lane has no width, " + place(*s));
   }
 }
 

@@ -245,15 +245,25 @@ struct LaneletCenter {
   return beside >= 0.5 * way.length();
 }
 
-/// Whether two ways cross, away from their ends, at an angle of 20 degrees or more.
-[[nodiscard]] inline bool cross_each_other(LaneletCenter const& one, LaneletCenter const& other) {
+/// The boxes of a line's parts of `part_length` segments each.
+inline constexpr std::size_t part_length = 16;
+[[nodiscard]] inline std::vector<geometry::Box> boxes_of_parts(std::span<Point const> line) {
+  std::vector<geometry::Box> boxes;
+  for (std::size_t i = 0; i + 1 < line.size(); i += part_length)
+    boxes.push_back(geometry::box_around(line.subspan(i, std::min(part_length + 1, line.size() - i))));
+  return boxes;
+}
+
+/// Whether a part of one way, from segment `i_first`, crosses a part of another one.
+[[nodiscard]] inline bool parts_cross(LaneletCenter const& one, std::size_t i_first, LaneletCenter const& other,
+                                      std::size_t k_first) {
   auto const &a = one.points, &b = other.points;
   constexpr double near_end = 0.5, sine = 0.34;  // [m], of 20 degrees
   auto const from_ends = [](std::vector<Point> const& line, Point const& p) {
     return std::min((p - line.front()).norm(), (p - line.back()).norm());
   };
-  for (std::size_t i = 0; i + 1 < a.size(); ++i)
-    for (std::size_t k = 0; k + 1 < b.size(); ++k) {
+  for (std::size_t i = i_first; i < std::min(i_first + part_length, a.size() - 1); ++i)
+    for (std::size_t k = k_first; k < std::min(k_first + part_length, b.size() - 1); ++k) {
       Point const u = a[i + 1] - a[i], v = b[k + 1] - b[k], w = b[k] - a[i];
       double const turn = u.x() * v.y() - u.y() * v.x();
       if (!(std::abs(turn) >= sine * u.norm() * v.norm()) || turn == 0.0) continue;
@@ -267,6 +277,15 @@ struct LaneletCenter {
       Point const p = a[i] + along * u;
       if (from_ends(a, p) > near_end && from_ends(b, p) > near_end) return true;
     }
+  return false;
+}
+
+/// Whether two ways cross, away from their ends, at an angle of 20 degrees or more.
+[[nodiscard]] inline bool cross_each_other(LaneletCenter const& one, LaneletCenter const& other) {
+  auto const own = boxes_of_parts(one.points), others = boxes_of_parts(other.points);
+  for (std::size_t i = 0; i < own.size(); ++i)
+    for (std::size_t k = 0; k < others.size(); ++k)
+      if (own[i].intersects(others[k]) && parts_cross(one, i * part_length, other, k * part_length)) return true;
   return false;
 }
 

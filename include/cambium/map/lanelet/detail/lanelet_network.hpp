@@ -187,7 +187,7 @@ class LaneletNetwork {
                     name + " does not begin where it ends, but " + cambium::detail::rounded_text(gap) +
                         " m away; the link was left out");
     Link const link{{from}, {to}};
-    if (std::find(links.begin(), links.end(), link) != links.end()) return;
+    if (!seen_.insert(link).second) return;
     links.push_back(link);
     if (double const step = apart({from}, {to}); step > rounding)
       report(Severity::info, by,
@@ -225,7 +225,7 @@ class LaneletNetwork {
     }
   }
 
-  /// Both sides name each other, or one does and the other names nobody; and they lie side by side.
+  /// Lanelets that lie side by side, where at least one names the other: those first that name each other.
   void find_neighbors() {
     right_of.assign(lanelets.size(), nobody);
     std::vector<bool> has_left(lanelets.size());
@@ -242,10 +242,16 @@ class LaneletNetwork {
       right_of[left] = right;
       has_left[right] = true;
     };
-    for (std::size_t i = 0; i < lanelets.size(); ++i) {
-      if (auto const id = lanelets[i].right_neighbor) pair(i, find(*id), i, *id);
-      if (auto const id = lanelets[i].left_neighbor) pair(find(*id), i, i, *id);
-    }
+    for (bool const mutual : {true, false})
+      for (std::size_t i = 0; i < lanelets.size(); ++i)
+        for (bool const to_right : {true, false}) {
+          auto const id = to_right ? lanelets[i].right_neighbor : lanelets[i].left_neighbor;
+          if (!id) continue;
+          auto const other = find(*id);
+          bool const is_mutual = other != nobody && (to_right ? lanelets[other].left_neighbor
+                                                              : lanelets[other].right_neighbor) == lanelets[i].id;
+          if (is_mutual == mutual) pair(to_right ? i : other, to_right ? other : i, i, *id);
+        }
   }
 
   /// Lanelets that cross each other lie in a junction, and so do those that leave or enter the same road beside them
@@ -326,6 +332,7 @@ class LaneletNetwork {
 
   Findings& findings_;
   std::map<std::int64_t, std::size_t> places_;
+  std::set<Link> seen_;
 };
 
 }  // namespace cambium::map::detail

@@ -60,7 +60,7 @@ struct LaneletSubtype {
     walkers = walkers || who.starts_with("pedestrian");
   }
   if (!any) return subtype != nullptr ? std::optional(subtype->type) : std::nullopt;
-  if (cars) return subtype != nullptr && is_drivable(subtype->type) ? subtype->type : LaneType::driving;
+  if (cars) return LaneType::driving;
   if (buses) return LaneType::bus;
   if (bicycles) return LaneType::biking;
   if (walkers) return LaneType::walking;
@@ -74,11 +74,25 @@ struct LaneletSubtype {
   auto const number_end = std::min(text.find_first_not_of("0123456789."), text.size());
   auto const value = parse_number<double>(text.substr(0, number_end));
   auto const unit = trimmed(text.substr(number_end));
-  if (!value || !(*value > 0.0)) return std::nullopt;
+  constexpr double fastest = 1000.0;  // in any unit
+  if (!value || !(*value > 0.0 && *value < fastest)) return std::nullopt;
   if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return *value / 3.6;
   if (unit == "mph" || unit == "m/h") return *value * 0.44704;
   if (unit == "m/s" || unit == "mps") return value;
   return std::nullopt;
+}
+
+/// The tag that says for a kind of lane alone whether it is one-way.
+[[nodiscard]] constexpr std::string_view one_way_of(LaneType type) {
+  if (is_drivable(type)) return "one_way:vehicle";
+  return type == LaneType::walking ? "one_way:pedestrian" : type == LaneType::biking ? "one_way:bicycle" : "";
+}
+
+/// Whether a lanelet is used both ways: vehicles only where it says so, people on foot unless it says the contrary.
+[[nodiscard]] inline bool goes_both_ways(pugi::xml_node node, LaneType type) {
+  if (!is_drivable(type) && type != LaneType::walking) return false;
+  bool const usual = osm_truth(osm_tag(node, "one_way")).value_or(type != LaneType::walking);
+  return !osm_truth(osm_tag(node, one_way_of(type))).value_or(usual);
 }
 
 /// Reports tags of a lanelet that have no effect, or not the written one.
@@ -91,11 +105,20 @@ inline void report_lanelet_tags(XmlContext& context, pugi::xml_node node, LaneTy
     std::string_view const key = child.attribute("k").value(), value = child.attribute("v").value();
     auto const said = std::string(key) + "=" + std::string(value);
     auto const truth = osm_truth(value);
-    bool const is_one_way = key == "one_way" || key == "one_way:vehicle";
-    if ((is_one_way || key.starts_with("participant:")) && !truth)
+    bool const is_one_way = key == "one_way" || (key == one_way_of(type) && !key.empty());
+    if ((key.starts_with("one_way") || key.starts_with("participant:")) && !truth)
       warn(child, said + " is neither yes nor no; it was left out");
-    else if (is_one_way && truth == false && type == LaneType::biking)
-      context.report(Severity::info, child, said + ": bicycle lanes are used one way only, as their bounds run");
+    else if (key.starts_with("one_way:") && !is_one_way)
+      context.report(Severity::info, child,
+                     said + " has no effect on a lanelet of the kind " + std::string(to_string(type)));
+    else if (is_one_way && truth == false && !is_drivable(type) && type != LaneType::walking)
+      context.report(
+          Severity::info, child,
+          said + ": lanes of the kind " + std::string(to_string(type)) + " are used one way only, as their bounds run");
+    else if (key == "location" && value != "urban" && value != "nonurban")
+      context.report(Severity::info, child, said + " is neither urban nor nonurban; urban was taken");
+    else if (key == "dynamic" && truth != false)
+      context.report(Severity::info, child, said + " is not read: limits and rules hold always");
     else if (key == "no_drivable_lane" && truth != false && is_drivable(type))
       warn(child, said + " is not read: its subtype and participants say that it is driven on");
     else if (key.starts_with("speed_limit:"))

@@ -155,6 +155,7 @@ class OsmWays {
     geometry::Box box;  // of the nodes that count; longitudes relative to the first one's turn of the globe
     auto const used = nodes_of_lanelets(root);
     std::optional<double> first;
+    bool is_local = true;  // all nodes that count have local places
     for_each_child(root, "node", [&](pugi::xml_node node) {
       auto const id = osm_id(context_, node);
       if (!id) return;
@@ -166,17 +167,21 @@ class OsmWays {
       auto const latitude = parse_number<double>(node.attribute("lat").value()),
                  longitude = parse_number<double>(node.attribute("lon").value());
       bool const is_placed = latitude && longitude && std::abs(*latitude) <= 84.0 && std::abs(*longitude) <= 180.0;
+      bool const counts = used.empty() || used.contains(*id);
+      if (!is_placed && !(x && y) && !counts)
+        return warn(node, "node " + std::to_string(*id) + " has no place, and no lanelet needs it; it was left out");
       if (!is_placed && !(x && y))
         throw MapError(at(node),
                        "node " + std::to_string(*id) +
                            " has no place: lat and lon are not both numbers of degrees within the UTM grid",
                        "repair the node, or give it tags local_x and local_y in metres");
       degrees.emplace(*id, is_placed ? Point{*longitude, *latitude} : Point{std::nan(""), std::nan("")});
-      if (!is_placed || (!used.empty() && !used.contains(*id))) return;
+      if (counts) is_local = is_local && x && y;
+      if (!is_placed || !counts) return;
       first = first.value_or(*longitude);
       box.add(*first + std::remainder(*longitude - *first, 360.0), *latitude);
     });
-    if (!local.empty() && local.size() == degrees.size()) return static_cast<void>(nodes_ = std::move(local));
+    if (!local.empty() && is_local) return static_cast<void>(nodes_ = std::move(local));
     for (auto const& [id, place] : degrees)
       if (!place.allFinite())
         throw MapError(context_.file(),

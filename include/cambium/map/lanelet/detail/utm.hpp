@@ -17,8 +17,7 @@ class UtmProjection {
  public:
   /// `latitude`, `longitude` of the origin [degrees].
   UtmProjection(double latitude, double longitude)
-      : meridian_(6.0 * std::clamp(std::floor((longitude + 180.0) / 6.0), 0.0, 59.0) - 177.0),
-        origin_(project(latitude, longitude)) {}
+      : meridian_(meridian_of(latitude, longitude)), origin_(project(latitude, longitude)) {}
 
   [[nodiscard]] geometry::Point operator()(double latitude, double longitude) const {
     auto const p = project(latitude, longitude) - origin_;
@@ -26,6 +25,14 @@ class UtmProjection {
   }
 
  private:
+  /// The middle of the zone [degrees]; those of south-western Norway and of Svalbard are wider.
+  [[nodiscard]] static double meridian_of(double latitude, double longitude) {
+    if (latitude >= 56.0 && latitude < 64.0 && longitude >= 3.0 && longitude < 12.0) return 9.0;
+    if (latitude >= 72.0 && longitude >= 0.0 && longitude < 42.0)
+      return longitude < 9.0 ? 3.0 : longitude < 21.0 ? 15.0 : longitude < 33.0 ? 27.0 : 39.0;
+    return 6.0 * std::clamp(std::floor((longitude + 180.0) / 6.0), 0.0, 59.0) - 177.0;
+  }
+
   [[nodiscard]] geometry::Point project(double latitude, double longitude) const {
     constexpr double radius = 6378137.0, flattening = 1.0 / 298.257223563, scale = 0.9996, degree = geometry::pi / 180;
     constexpr double n = flattening / (2.0 - flattening);

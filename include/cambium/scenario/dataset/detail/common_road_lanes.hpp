@@ -41,6 +41,10 @@ inline constexpr std::pair<std::string_view, map::LaneType> common_road_lane_typ
 inline constexpr std::string_view common_road_driving[] = {
     "urban", "country", "highway", "driveWay", "mainCarriageWay", "interstate", "busStop", "intersection", "unknown"};
 
+/// The words of users.
+inline constexpr std::string_view common_road_user_words[] = {
+    "vehicle", "car", "truck", "bus", "priorityVehicle", "motorcycle", "bicycle", "pedestrian", "train", "taxi"};
+
 /// The words of those that lanelets of a type are for.
 [[nodiscard]] inline std::vector<std::string_view> common_road_users(map::LaneType type) {
   switch (type) {
@@ -84,6 +88,8 @@ class CommonRoadLanes : protected CommonRoadSignals {
     xml::for_each_child(root, [&](Node node, std::string_view name) { read_sign_or_light(node, name); });
     xml::for_each_child(root, "lanelet", [&](Node node) { read_lanelet(node); });
     xml::for_each_child(root, "intersection", [&](Node node) { read_intersection(node); });
+    for (auto const& lanelet : traffic_.lanelets)
+      for (auto const id : lanelet.predecessors) named_as_predecessor_.emplace(id, lanelet.id);
     for (auto const& pending : arrows_) hang_arrow(pending);
     report_one_sided();
     if (!traffic_.lanelets.empty()) make_map(options);
@@ -125,13 +131,13 @@ class CommonRoadLanes : protected CommonRoadSignals {
       places_.erase(*id);
       return warn(node, "lanelet " + std::to_string(*id) + " was left out, see the previous finding");
     }
-    users_.clear();
-    both_ways_.clear();
-    xml::for_each_child(node, [&](Node child, std::string_view name) { read_lanelet_part(child, name, lanelet); });
-    if (lanelet.type == map::LaneType::driving) lanelet.type = type_for_users();
-    lanelet.both_directions = both_ways_.contains("vehicle") || both_ways_.contains("car");
+    Users users;
+    xml::for_each_child(node,
+                        [&](Node child, std::string_view name) { read_lanelet_part(child, name, lanelet, users); });
+    if (lanelet.type == map::LaneType::driving) lanelet.type = type_for(users.all);
+    lanelet.both_directions = users.both_ways.contains("vehicle") || users.both_ways.contains("car");
     for (auto const user : common_road_users(lanelet.type))
-      lanelet.both_directions = lanelet.both_directions || both_ways_.contains(std::string(user));
+      lanelet.both_directions = lanelet.both_directions || users.both_ways.contains(user);
     if (auto const line = xml::find_child(node, "stopLine")) read_stop_line(line, lanelet);
     traffic_.lanelets.push_back(std::move(lanelet));
   }
@@ -143,18 +149,33 @@ class CommonRoadLanes : protected CommonRoadSignals {
     return true;
   }
 
-  /// What a lanelet is for by its users, where these are none of the usual traffic.
-  [[nodiscard]] map::LaneType type_for_users() const {
-    bool const bikes = users_.contains("bicycle"), walks = users_.contains("pedestrian");
-    if (users_.empty() || users_.size() > (bikes ? 1u : 0u) + (walks ? 1u : 0u)) {
-      if (users_.size() != 1) return map::LaneType::driving;
-      auto const& user = *users_.begin();
-      return user == "bus"     ? map::LaneType::bus
-             : user == "taxi"  ? map::LaneType::taxi
-             : user == "train" ? map::LaneType::rail
-                               : map::LaneType::driving;
-    }
-    return bikes && walks ? map::LaneType::shared : bikes ? map::LaneType::biking : map::LaneType::walking;
+  /// Who may use a lanelet, and who of them both ways.
+  struct Users {
+    std::set<std::string_view> all, both_ways;
+  };
+
+  void add_user(Node node, bool both_ways, Users& users) {
+    auto const word = text_of(node);
+    if (std::find(std::begin(common_road_user_words), std::end(common_road_user_words), word) ==
+        std::end(common_road_user_words))
+      return warn(node, "the user \"" + std::string(word) + "\" is not known; it was left out");
+    users.all.insert(word);
+    if (both_ways) users.both_ways.insert(word);
+  }
+
+  /// What a lanelet is for by its users: usual traffic, or else the fastest of them.
+  [[nodiscard]] static map::LaneType type_for(std::set<std::string_view> const& users) {
+    using map::LaneType;
+    constexpr std::pair<std::string_view, LaneType> by_user[] = {
+        {"vehicle", LaneType::driving}, {"car", LaneType::driving},
+        {"truck", LaneType::driving},   {"motorcycle", LaneType::driving},
+        {"bus", LaneType::bus},         {"taxi", LaneType::taxi},
+        {"train", LaneType::rail},      {"priorityVehicle", LaneType::restricted}};
+    for (auto const& [word, type] : by_user)
+      if (users.contains(word)) return type;
+    bool const bikes = users.contains("bicycle"), walks = users.contains("pedestrian");
+    if (!bikes && !walks) return LaneType::driving;  // nobody is named
+    return bikes && walks ? LaneType::shared : bikes ? LaneType::biking : LaneType::walking;
   }
 
   void read_type(Node node, map::Lanelet& lanelet) {
@@ -170,13 +191,17 @@ class CommonRoadLanes : protected CommonRoadSignals {
       warn(node, "the type \"" + std::string(text) + "\" is not known; the lanelet counts as one for driving");
   }
 
-  void read_lanelet_part(Node node, std::string_view name, map::Lanelet& lanelet) {
+  void read_lanelet_part(Node node, std::string_view name, map::Lanelet& lanelet, Users& users) {
     if (name == "predecessor" || name == "successor") {
       auto& list = name == "successor" ? lanelet.successors : lanelet.predecessors;
       if (auto const ref = reference(node)) list.push_back(*ref);
     } else if (name == "adjacentLeft" || name == "adjacentRight") {
       auto const ref = reference(node);
-      if (!ref || std::string_view(node.attribute("drivingDir").value()) == "opposite") return;
+      std::string_view const way = node.attribute("drivingDir").value();
+      if (way != "same" && way != "opposite")
+        return warn(node, "its drivingDir \"" + std::string(way) + "\" is neither same nor opposite; it was left out");
+      if (way == "opposite") return note_once(node, "neighbours that are driven the other way are not read");
+      if (!ref) return;
       (name == "adjacentLeft" ? lanelet.left_neighbor : lanelet.right_neighbor) = ref;
     } else if (name == "laneletType") {
       read_type(node, lanelet);
@@ -187,10 +212,11 @@ class CommonRoadLanes : protected CommonRoadSignals {
       else
         warn(node, "\"" + std::string(text_of(node)) + "\" is no speed between 0 and 1000 m/s; it was left out");
     } else if (name == "userOneWay" || name == "userBidirectional") {
-      users_.emplace(text_of(node));
-      if (name == "userBidirectional") both_ways_.emplace(text_of(node));
+      add_user(node, name == "userBidirectional", users);
     } else if (name == "trafficSignRef" || name == "trafficLightRef") {
       if (auto const ref = reference(node)) add_signal(node, *ref, 0.0, lanelet);
+    } else if (name != "leftBound" && name != "rightBound" && name != "stopLine") {
+      note_once(node, "elements <" + std::string(name) + "> of lanelets are not read");
     }
   }
 
@@ -209,8 +235,10 @@ class CommonRoadLanes : protected CommonRoadSignals {
       if (auto const ref = reference(child)) add_signal(child, *ref, before, lanelet);
     });
     for (auto& signal : lanelet.signals) signal.before_end = before;
-    for (auto& arrow : arrows_)
-      if (arrow.lanelet == traffic_.lanelets.size()) arrow.before_end = before;
+    auto arrow = arrows_.rbegin();
+    for (; arrow != arrows_.rend() && arrow->lanelet == traffic_.lanelets.size(); ++arrow) arrow->before_end = before;
+    if (lanelet.signals.empty() && arrow == arrows_.rbegin())
+      note_once(node, "stop lines without a sign or light have no effect");
   }
 
   void add_signal(Node node, Id ref, double before, map::Lanelet& lanelet) {
@@ -236,6 +264,7 @@ class CommonRoadLanes : protected CommonRoadSignals {
     std::set<Id> inside;
     xml::for_each_child(node, "incoming", [&](Node incoming) {
       xml::for_each_child(incoming, [&](Node child, std::string_view name) {
+        if (name == "isLeftOf") return note_once(child, "who comes from the left of whom is read from the geometry");
         if (!name.starts_with("successors")) return;
         auto const ref = reference(child);
         if (!ref) return;
@@ -250,8 +279,13 @@ class CommonRoadLanes : protected CommonRoadSignals {
         });
       });
     });
-    for (auto& lanelet : traffic_.lanelets)
-      if (inside.contains(lanelet.id)) lanelet.in_junction = true;
+    if (auto const crossing = xml::find_child(node, "crossing"))
+      note_once(crossing, "the crossings of intersections are not read: lanelets of the type crosswalk are");
+    for (auto const id : inside)
+      if (auto const at = places_.find(id); at != places_.end())
+        traffic_.lanelets[at->second].in_junction = true;
+      else
+        warn(node, "the way through it, lanelet " + std::to_string(id) + ", is not there");
   }
 
   /// An arrow light is for the ways behind the lanelet that turn so, as intersections say, else as their bounds do.
@@ -262,9 +296,14 @@ class CommonRoadLanes : protected CommonRoadSignals {
     std::vector<std::size_t> ways;
     std::size_t followers = 0;
     bool guessed = false;
-    for (std::size_t i = 0; i < traffic_.lanelets.size(); ++i) {
+    auto const [first, last] = named_as_predecessor_.equal_range(from.id);
+    std::set<Id> behind(from.successors.begin(), from.successors.end());
+    for (auto at = first; at != last; ++at) behind.insert(at->second);
+    for (auto const id : behind) {
+      auto const at = places_.find(id);
+      if (at == places_.end()) continue;
+      auto const i = at->second;
       auto const& to = traffic_.lanelets[i];
-      if (!names(from.successors, to.id) && !names(to.predecessors, from.id)) continue;
       ++followers;
       auto const known = turns_.find({from.id, to.id});
       guessed = guessed || known == turns_.end();
@@ -340,8 +379,8 @@ class CommonRoadLanes : protected CommonRoadSignals {
     }
   }
 
-  std::map<Id, std::size_t> places_;         ///< of the lanelets
-  std::set<std::string> users_, both_ways_;  ///< of the lanelet that is being read
+  std::map<Id, std::size_t> places_;            ///< of the lanelets
+  std::multimap<Id, Id> named_as_predecessor_;  ///< and the lanelets that name them so
   std::vector<PendingArrow> arrows_;
   std::map<std::pair<Id, Id>, map::Arrow> turns_;  ///< of a lanelet and one behind it
 };

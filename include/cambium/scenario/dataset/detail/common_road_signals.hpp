@@ -16,14 +16,12 @@
 
 namespace cambium::detail {
 
-/// What a sign says by the catalogue of a benchmark's country, "DEU_Test-1_1" or "C-USA_US101-1_1_T-1"; by the American
-/// one where the country is none on Earth, as Zamunda (ZAM) is.
-[[nodiscard]] inline map::SignalCode const* common_road_sign(std::string_view benchmark, std::string_view id) {
+/// What a sign says by the catalogue of a benchmark's country, "DEU_Test-1_1" or "C-USA_US101-1_1_T-1"; for Zamunda
+/// (ZAM), which is not on Earth, by the American or the German one.
+[[nodiscard]] inline std::optional<map::SignalSense> common_road_sign(std::string_view benchmark, std::string_view id) {
   if (benchmark.starts_with("C-")) benchmark.remove_prefix(2);
   auto const country = benchmark.substr(0, 3);
-  for (auto const& [word, code] : {std::pair{"USA", "us"}, {"ZAM", "us"}, {"ESP", "es"}, {"AUS", "au"}, {"CHN", "cn"}})
-    if (word == country) return map::find_signal_code(code, id, "");
-  return map::find_signal_code("", id, "");
+  return map::find_signal(country == "ZAM" ? "USA" : country, id, "");
 }
 
 /// A phase of a light.
@@ -85,10 +83,15 @@ class CommonRoadSignals : protected CommonRoadValues {
     Sign sign;
     xml::for_each_child(node, "trafficSignElement", [&](Node element) {
       auto const word = text_of(xml::find_child(element, "trafficSignID"));
-      auto const* const code = common_road_sign(traffic_.name, word);
-      if (code == nullptr) return warn(element, "its sign " + std::string(word) + " is not known; it was left out");
-      if (auto const kind = map::kind_of(code->meaning); kind && kind != map::SignalKind::light) sign.kind = kind;
-      if (code->meaning != map::SignalMeaning::speed_limit) return;
+      auto const sense = common_road_sign(traffic_.name, word);
+      if (!sense) return warn(element, "its sign " + std::string(word) + " is not known; it was left out");
+      auto const kind = map::kind_of(sense->meaning);
+      if (kind && kind != map::SignalKind::light)
+        sign.kind = kind;
+      else if (sense->meaning != map::SignalMeaning::speed_limit)
+        note_once(element,
+                  "signs of the number " + std::string(word) + " have no effect: they do not say who goes first");
+      if (sense->meaning != map::SignalMeaning::speed_limit) return;
       auto const limit = number(element, "additionalValue");
       if (limit && *limit > 0.0 && *limit < 300.0)
         sign.speed = limit;
@@ -118,8 +121,8 @@ class CommonRoadSignals : protected CommonRoadValues {
   /// The phases of a light: green, then yellow; all else is red. One that is always red has a green of 0 s.
   [[nodiscard]] map::LightPlan plan_of(Node node) {
     auto const active = xml::find_child(node, "active");
-    if (text_of(active) == "false") return {};
-    if (active && text_of(active) != "true")
+    if (auto const word = text_of(active); word == "false" || word == "0") return {};
+    if (active && text_of(active) != "true" && text_of(active) != "1")
       warn(active, "\"" + std::string(text_of(active)) + "\" is neither true nor false; true was taken");
     auto const cycle = xml::find_child(node, "cycle");
     if (!cycle) {
@@ -184,7 +187,7 @@ class CommonRoadSignals : protected CommonRoadValues {
       if (color == "inactive")
         ++inactive;
       else if (!is_known)
-        warn(element, "\"" + std::string(color) + "\" is no color of a light; the phase counts as red");
+        warn(element, "\"" + std::string(color) + "\" is no colour of a light; the phase counts as red");
       phases.push_back(phase);
     });
     if (inactive == phases.size()) return {};

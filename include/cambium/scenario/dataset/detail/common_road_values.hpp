@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -44,6 +47,10 @@ class CommonRoadValues {
 
   void warn(Node node, std::string sentence) { context_.report(Severity::warning, node, std::move(sentence)); }
   void note(Node node, std::string sentence) { context_.report(Severity::info, node, std::move(sentence)); }
+  /// Says each sentence once, where it holds first.
+  void note_once(Node node, std::string const& sentence) {
+    if (said_.insert(sentence).second) note(node, sentence);
+  }
 
   [[nodiscard]] static std::string_view text_of(Node node) { return xml::trimmed(node.child_value()); }
 
@@ -196,11 +203,19 @@ class CommonRoadValues {
     state.y = at->y();
     state.heading = value(node, "orientation").value_or(heading);
     state.speed = value(node, "velocity").value_or(0.0);
+    constexpr std::string_view read[] = {"position", "time", "orientation", "velocity"};
+    xml::for_each_child(node, [&](Node child, std::string_view name) {
+      if (std::find(std::begin(read), std::end(read), name) == std::end(read))
+        note_once(child, "elements <" + std::string(name) + "> of states are not read");
+    });
     return state;
   }
 
   RecordedTraffic traffic_;
   xml::XmlContext context_;
+
+ private:
+  std::set<std::string> said_;
 };
 
 }  // namespace cambium::detail
