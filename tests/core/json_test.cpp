@@ -14,6 +14,7 @@
 #include "cambium/behavior/open_loop/motion_primitives.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
+#include "cambium/core/text.hpp"
 #include "../support/allocations.hpp"
 #include "../support/described.hpp"
 
@@ -40,6 +41,49 @@ std::string refusal(std::string const& text) {
   }
   return "accepted";
 }
+
+/// More fields than a byte has bits.
+struct Ten {
+  double v0 = 0, v1 = 0, v2 = 0, v3 = 0, v4 = 0, v5 = 0, v6 = 0, v7 = 0, v8 = 0, v9 = 0;
+
+  static constexpr char const* name = "ten";
+  static constexpr auto parameters() {
+    using P = Ten;
+    return parameter_list(
+        parameter("v0", &P::v0, "-", any_finite, "a number"), parameter("v1", &P::v1, "-", any_finite, "a number"),
+        parameter("v2", &P::v2, "-", any_finite, "a number"), parameter("v3", &P::v3, "-", any_finite, "a number"),
+        parameter("v4", &P::v4, "-", any_finite, "a number"), parameter("v5", &P::v5, "-", any_finite, "a number"),
+        parameter("v6", &P::v6, "-", any_finite, "a number"), parameter("v7", &P::v7, "-", any_finite, "a number"),
+        parameter("v8", &P::v8, "-", any_finite, "a number"), parameter("v9", &P::v9, "-", any_finite, "a number"));
+  }
+};
+
+/// A struct that has the name of another one.
+struct AlsoStraight {
+  static constexpr char const* name = "straight";
+  static constexpr auto parameters() { return parameter_list(); }
+};
+struct Ways {
+  OneOf<Straight, AlsoStraight> way{};
+  std::vector<Straight> list{};
+  std::optional<std::vector<double>> numbers{};
+
+  static constexpr char const* name = "ways";
+  static constexpr auto parameters() {
+    using P = Ways;
+    return parameter_list(parameter("way", &P::way, "one of two"), parameter("list", &P::list, "a list"),
+                          parameter("numbers", &P::numbers, "-", any_finite, "perhaps some"));
+  }
+};
+
+struct Third {
+  float share = 0.3f;
+
+  static constexpr char const* name = "third";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("share", &Third::share, "-", Range{0, 0.3}, "0.3 is no float"));
+  }
+};
 
 enum class Mode : std::uint32_t { city, motorway };
 struct Driver {
@@ -177,6 +221,58 @@ TEST_CASE("a choice is written by name, whatever integer its enum is") {
   CHECK(from_json<Driver>(R"({"mode": "motorway"})").mode == Mode::motorway);
 }
 
+TEST_CASE("numbers of single precision reach their bounds, and go no farther") {
+  CHECK_NOTHROW(check_parameters(Third{}));
+  CHECK(from_json<Third>(R"({"share": 0.3})").share == 0.3f);
+  CHECK_THROWS_AS(check_parameters(Third{0.30001f}), ParameterError);
+  CHECK_THROWS_AS(check_parameters(Third{-1e-30f}), ParameterError);
+  CHECK_THROWS_AS(check_parameters(Third{std::nanf("")}), ParameterError);
+}
+
+TEST_CASE("unequal parameters have unequal hashes, and these are the same everywhere") {
+  std::vector<Ways> const all{{},
+                              {.way = AlsoStraight{}},
+                              {.list = {Straight{}}},
+                              {.list = {Straight{}, Straight{}}},
+                              {.numbers = std::vector<double>{}},
+                              {.numbers = std::vector<double>{1.0}}};
+  for (auto const& a : all)
+    for (auto const& b : all) CHECK((hash_parameters(a) == hash_parameters(b)) == (&a == &b));
+  CHECK(hash_text(hash_parameters(Window{})) == "bbf26661d448fcb7");
+  CHECK(hash_text(hash_parameters(One<std::vector<double>>{{1.0, -2.5}})) == "f9d2afaeb5b2d9cc");
+  CHECK(hash_text(hash_parameters(One<std::string>{"some letters"})) == "71ef95f767f6ce73");
+}
+
+TEST_CASE("a text that JSON cannot hold is refused, not changed") {
+  One<std::string> const latin{
+      "B\xf6"
+      "blingen"};
+  CHECK_THROWS_WITH_AS(static_cast<void>(to_json(latin)), doctest::Contains("value: is no UTF-8 text"), ParameterError);
+  CHECK(from_binary<One<std::string>>(to_binary(latin)).value == latin.value);
+  CHECK(from_json<One<std::string>>(to_json(One<std::string>{"B\xc3\xb6"
+                                                             "blingen"}))
+            .value ==
+        "B\xc3\xb6"
+        "blingen");
+}
+
+TEST_CASE("many keys are no reason to wait, and a text takes memory by its size") {
+  std::string keys = "{";
+  for (int i = 0; i < 50'000; ++i) keys += "\"k" + std::to_string(i) + "\": 1, ";
+  CHECK(refusal(keys + "\"k\": 1}").find("has no field \"k0\"") != std::string::npos);
+  CHECK(refusal(keys + "\"k7\": 1}").find("the key \"k7\" is there twice") != std::string::npos);
+  using Books = One<std::vector<One<std::array<double, 500>>>>;
+  auto const books = [](std::size_t count) {
+    std::string text = "{\"value\": [{}";
+    for (std::size_t i = 1; i < count; ++i) text += ", {}";
+    return text + "]}";
+  };
+  CHECK(from_json<Books>(books(1000)).value.size() == 1000);
+  auto const before = support::allocated_bytes();
+  CHECK(refusal<Books>(books(200'000)).find("f.json: expands to far more memory") == 0);
+  CHECK(support::allocated_bytes() - before < 100'000'000);
+}
+
 TEST_CASE("damaged texts are read or refused, never worse") {
   auto const good = to_json(unusual(), JsonDetail::everything);
   RandomStream stream(1, 0, 0);
@@ -202,6 +298,15 @@ TEST_CASE("a described struct travels as bytes") {
     CHECK(equal_parameters(read, object));
     CHECK(to_binary(read) == bytes);
     CHECK(bytes.size() < to_json(object, JsonDetail::everything).size() / 2);
+  }
+  for (std::size_t const length : {1u, 253u, 254u, 255u, 256u, 257u}) {
+    One<std::vector<double>> const list{std::vector<double>(length, 2.0)};
+    CHECK(from_binary<One<std::vector<double>>>(to_binary(list)).value == list.value);
+  }
+  for (auto const field : {&Ten::v0, &Ten::v6, &Ten::v7, &Ten::v8, &Ten::v9}) {
+    One<std::vector<Ten>> list{std::vector<Ten>(2)};
+    list.value[1].*field = 1.0;
+    CHECK(equal_parameters(from_binary<One<std::vector<Ten>>>(to_binary(list)), list));
   }
   CHECK(std::signbit(from_binary<Everything>(to_binary(unusual())).pair[1]));
   CHECK_THROWS_AS(static_cast<void>(to_binary(Everything{.way = Secret{}})), ParameterError);

@@ -227,9 +227,10 @@ class FieldReader {
     if (!is_old_) check_range(type, object, info);
   }
 
-  /// Checks a whole number: it may be an index. A range of one value is none: `{}`.
+  /// Checks a whole number: it may be an index. The range `{}` is none, except of an enum with one value.
   void check_range(TypeInfo const& type, void const* object, ParameterInfo const& info) const {
-    if (type.is_real() || !(info.range.low < info.range.high)) return;
+    bool const has_range = info.choices != nullptr || info.range.low != 0.0 || info.range.high != 0.0;
+    if (type.is_real() || !has_range) return;
     auto const value = PlainValue::at(object, type);
     if (!value.in(info.range))
       throw ParameterError(where_ + ": " + info.name,

@@ -47,21 +47,17 @@ struct Parameter : ParameterInfo {
 };
 
 namespace detail {
-/// What a field consists of: of a list or an optional the type of its elements, which may still be incomplete.
+/// What a field consists of: of a list or an optional what its elements consist of, whose type may be incomplete.
 template <class Field>
 struct PartOf {
   using type = Field;
 };
 template <class Field>
 requires requires { typename Field::value_type; }
-struct PartOf<Field> {
-  using type = typename Field::value_type;
-};
+struct PartOf<Field> : PartOf<typename Field::value_type> {};
 template <class Field>
 requires requires { typename Field::element_type::value_type; }  // a pointer to a list
-struct PartOf<Field> {
-  using type = typename Field::element_type::value_type;
-};
+struct PartOf<Field> : PartOf<typename Field::element_type::value_type> {};
 template <>
 struct PartOf<std::string> {
   using type = std::string;

@@ -53,6 +53,9 @@ inline bool JsonValue::has_parts() const {
 /// nested deeper than 100, or if a key is there twice in one object.
 [[nodiscard]] JsonValue parse_json(std::string_view text, std::string const& where);
 
+/// Whether a text is UTF-8, as those of JSON are.
+[[nodiscard]] bool is_utf8(std::string const& text);
+
 /// Writes a value on one line, unless `text` would get longer than `most`; returns whether it did.
 bool print_flat(JsonValue const& value, std::size_t most, std::string& text);
 

@@ -44,14 +44,18 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
   bool start_object(std::size_t) override { return open({std::vector<JsonValue::Member>()}); }
   bool start_array(std::size_t) override { return open({std::vector<JsonValue>()}); }
   bool key(std::string& value) override {
-    auto& members = std::get<std::vector<JsonValue::Member>>(open_.back()->value);
-    for (auto const& [name, member] : members)
-      if (name == value)
-        throw ParameterError(where_, "the key \"" + value + "\" is there twice in one object", "remove one of them");
-    members.push_back({std::move(value)});
+    std::get<std::vector<JsonValue::Member>>(open_.back()->value).push_back({std::move(value)});
     return true;
   }
-  bool end_object() override { return close(); }
+  bool end_object() override {
+    std::vector<std::string_view> names;
+    for (auto const& member : *open_.back()->members()) names.push_back(member.first);
+    std::sort(names.begin(), names.end());
+    if (auto const twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
+      throw ParameterError(where_, "the key \"" + std::string(*twice) + "\" is there twice in one object",
+                           "remove one of them");
+    return close();
+  }
   bool end_array() override { return close(); }
   bool parse_error(std::size_t position, std::string const& token, nlohmann::json::exception const& error) override {
     auto const at = std::min(position > 0 ? position - 1 : 0, text_.size());
@@ -109,6 +113,15 @@ CAMBIUM_COLD JsonValue parse_json(std::string_view text, std::string const& wher
   JsonBuilder builder(text, where);
   nlohmann::json::sax_parse(text.begin(), text.end(), &builder);
   return std::move(builder.root());
+}
+
+CAMBIUM_COLD bool is_utf8(std::string const& text) {
+  try {
+    (void)nlohmann::json(text).dump();
+    return true;
+  } catch (nlohmann::json::type_error const&) {
+    return false;
+  }
 }
 
 CAMBIUM_COLD bool print_flat(JsonValue const& value, std::size_t most, std::string& text) {

@@ -58,6 +58,8 @@ class JsonWriter {
         return elements.count > 0 || type.elements(usual).count > 0;
       }
       case Kind::text:
+        if (!is_utf8(*static_cast<std::string const*>(object)))
+          throw ParameterError(path.text(), "is no UTF-8 text", "JSON holds no others: write it so, or a binary file");
         json.value = *static_cast<std::string const*>(object);
         break;
       default:
@@ -134,7 +136,8 @@ class JsonWriter {
 /// Fills a struct from a document.
 class JsonReader {
  public:
-  JsonReader(std::string const& file, LaneNames const* lanes) : file_(file), lanes_(lanes) {}
+  JsonReader(std::string const& file, LaneNames const* lanes, JsonValue const& document)
+      : file_(file), lanes_(lanes), room_(always + per_value * values_in(document)) {}
 
   /// Reads a value. `usual`: what an alternative or an optional is at first, if the object holds another or nothing.
   void read(ParameterPath const& path, ParameterInfo const& info, TypeInfo const& type, void* object, void const* usual,
@@ -155,6 +158,7 @@ class JsonReader {
               where(path), "has " + std::to_string(items->size()) + " elements",
               std::string(type.least < type.most ? "give at most " : "give ") + std::to_string(type.most));
         auto const& element = type.element();
+        take_room(items->size() * element.size);
         return type.fill(object, items->size(), where(path), [&](std::size_t i, void* item, void const*) {
           element.assign(item, element.usual());  // what the file's elements differ from
           read(path.at(i), info, element, item, element.usual(), (*items)[i]);
@@ -263,6 +267,22 @@ class JsonReader {
     return number;
   }
 
+  /// How many values a document has, with those in others.
+  [[nodiscard]] static std::size_t values_in(JsonValue const& json) {
+    std::size_t count = 1;
+    if (auto const* const items = json.items())
+      for (auto const& item : *items) count += values_in(item);
+    if (auto const* const members = json.members())
+      for (auto const& member : *members) count += values_in(member.second);
+    return count;
+  }
+  void take_room(std::size_t bytes) const {
+    if (bytes > room_)
+      throw ParameterError(file_, "expands to far more memory than a file of its size should",
+                           "take another copy; if this one is sound, use the binary form");
+    room_ -= bytes;
+  }
+
   [[nodiscard]] std::string where(ParameterPath const& path) const { return file_ + ": " + path.text(); }
   [[noreturn]] void refuse(ParameterPath const& path, JsonValue const& json, std::string const& expected) const {
     std::string found;
@@ -299,8 +319,11 @@ class JsonReader {
     return {type.kind, negative != nullptr ? static_cast<double>(*negative) : static_cast<double>(bits), bits};
   }
 
+  static constexpr std::size_t always = std::size_t{1} << 26, per_value = 1024;  // [bytes]
+
   std::string const& file_;
   LaneNames const* lanes_;
+  mutable std::size_t room_;  ///< for elements of lists that are still to come [bytes]
 };
 
 CAMBIUM_COLD JsonValue json_value(TypeInfo const& type, void const* object, JsonDetail detail, LaneNames const* lanes) {
@@ -309,7 +332,7 @@ CAMBIUM_COLD JsonValue json_value(TypeInfo const& type, void const* object, Json
 
 CAMBIUM_COLD void read_json_value(JsonValue const& document, TypeInfo const& type, void* object, char const* name,
                                   std::string const& where, LaneNames const* lanes) {
-  JsonReader(where, lanes).read_struct({nullptr, name}, type, object, type.usual(), document);
+  JsonReader(where, lanes, document).read_struct({nullptr, name}, type, object, type.usual(), document);
 }
 
 }  // namespace cambium::detail

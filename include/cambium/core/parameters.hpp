@@ -77,8 +77,10 @@ class ValueVisitor {
  public:
   virtual void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) = 0;
   virtual void text(ParameterPath const&, ParameterInfo const&, std::string const&) {}
-  /// A `OneOf` holds the alternative `name`; its fields follow.
-  virtual void alternative(ParameterPath const&, ParameterInfo const&, char const*) {}
+  /// A `OneOf` holds the alternative `name`, as in files; its fields follow.
+  virtual void alternative(ParameterPath const&, ParameterInfo const&, std::string const&) {}
+  /// A list or an optional holds so many values, which follow.
+  virtual void count(ParameterPath const&, ParameterInfo const&, std::size_t) {}
   /// The fields of a struct are done.
   virtual void end(ParameterPath const&, TypeInfo const&, void const*) {}
 

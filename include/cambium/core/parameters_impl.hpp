@@ -209,11 +209,13 @@ CAMBIUM_COLD void visit_values(ParameterPath const& path, ParameterInfo const& i
     case TypeInfo::Kind::one_of: {
       auto const& model = type.alternatives[type.index(object)]();
       ParameterPath const inner{&path, model.name};
-      visitor.alternative(path, info, model.name);
+      auto const named = alternative_name(type, type.index(object));
+      visitor.alternative(path, info, named.empty() ? model.name : named);
       if (model.kind == TypeInfo::Kind::structure) visit_fields(model, type.held(object), &inner, lists, visitor);
       return;
     }
     case TypeInfo::Kind::optional:
+      visitor.count(path, info, type.held(object) != nullptr ? 1 : 0);
       if (auto const* const held = type.held(object)) visit_values(path, info, type.element(), held, lists, visitor);
       return;
     case TypeInfo::Kind::list: {
@@ -221,6 +223,7 @@ CAMBIUM_COLD void visit_values(ParameterPath const& path, ParameterInfo const& i
       if (lists == ListElements::one_default)
         return visit_values(path.at(ParameterPath::any_element), info, element, element.usual(), lists, visitor);
       auto const elements = type.elements(object);
+      visitor.count(path, info, elements.count);
       for (std::size_t i = 0; i < elements.count; ++i)
         visit_values(path.at(i), info, element, elements[i], lists, visitor);
       return;
@@ -280,7 +283,7 @@ class TextVisitor : public ValueVisitor {
   void text(ParameterPath const& path, ParameterInfo const& info, std::string const& text) final {
     add(path, info, '"' + text + '"', nullptr);
   }
-  void alternative(ParameterPath const& path, ParameterInfo const& info, char const* name) final {
+  void alternative(ParameterPath const& path, ParameterInfo const& info, std::string const& name) final {
     add(path, info, name, nullptr);
   }
 
@@ -316,19 +319,10 @@ CAMBIUM_COLD std::string parameters_line(TypeInfo const& type, void const* objec
 
 CAMBIUM_COLD std::uint64_t parameters_hash(TypeInfo const& type, void const* object) {
   struct Hash final : ValueVisitor {
-    std::uint64_t hash = 0xcbf29ce484222325u;
+    std::uint64_t hash = 0;
 
     void add_bits(std::uint64_t bits) { hash = mixed(hash, bits); }
-    void add_text(std::string_view text) {  // eight letters at a time: most of the time goes into names
-      add_bits(text.size());
-      std::uint64_t word = 0;
-      for (std::size_t i = 0; i < text.size(); ++i) {
-        word |= std::uint64_t{static_cast<unsigned char>(text[i])} << (8 * (i % 8));
-        if (i % 8 != 7 && i + 1 != text.size()) continue;
-        add_bits(word);
-        word = 0;
-      }
-    }
+    void add_text(std::string_view text) { add_bits(checksum_of(text)); }
     void add_path(ParameterPath const& path, ParameterInfo const& info) {
       for (auto const* key = &path; key != nullptr; key = key->outer) {
         if (key != &path) add_text(key->name);
@@ -345,9 +339,13 @@ CAMBIUM_COLD std::uint64_t parameters_hash(TypeInfo const& type, void const* obj
       add_path(path, info);
       add_text(text);
     }
-    void alternative(ParameterPath const& path, ParameterInfo const& info, char const* name) override {
+    void alternative(ParameterPath const& path, ParameterInfo const& info, std::string const& name) override {
       add_path(path, info);
       add_text(name);
+    }
+    void count(ParameterPath const& path, ParameterInfo const& info, std::size_t parts) override {
+      add_path(path, info);
+      add_bits(parts);
     }
   } hash;
   hash.add_text(type.name);

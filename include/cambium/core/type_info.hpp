@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -306,6 +307,8 @@ void describe_one_of(TypeInfo& info, std::variant<Models...> const* none) {
 
 template <Optional T>
 void describe_optional(TypeInfo& info) {
+  static_assert(!Optional<typename T::value_type>,
+                "cambium::parameter: JSON cannot tell an empty optional from one that holds an empty optional");
   info.element = type_of_element<typename T::value_type>();
   info.held = [](void const* object) -> void const* {
     auto const& value = *static_cast<T const*>(object);
@@ -432,7 +435,10 @@ struct PlainValue {
   [[nodiscard]] bool is_real() const { return kind >= TypeInfo::Kind::single_precision; }
   [[nodiscard]] bool has_range() const { return kind != TypeInfo::Kind::boolean && !is_id(); }
   [[nodiscard]] bool in(Range range) const {
-    return !has_range() || (number >= range.low && number <= range.high);  // false for NaN
+    if (!has_range()) return true;
+    double const rounding = kind == TypeInfo::Kind::single_precision ? 0x1p-24 : 0.0;  // a bound may be no float
+    return (number >= range.low || range.low - number <= rounding * std::abs(range.low)) &&
+           (number <= range.high || number - range.high <= rounding * std::abs(range.high));  // false for NaN
   }
 };
 

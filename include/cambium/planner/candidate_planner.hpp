@@ -45,10 +45,10 @@ struct CandidateWorkspace {
     return true;
   }
 
-  /// Whether the budget lasts for another candidate after `done` of them.
+  /// Whether the budget lasts for another candidate after `done` of them; it always lasts for the first one.
   template <class Budget>
   [[nodiscard]] bool goes_on(Budget& clock, std::size_t done) {
-    is_cut_short = is_cut_short || !clock.goes_on(done);
+    is_cut_short = is_cut_short || (done > 0 && !clock.goes_on(done));
     return !is_cut_short;
   }
 

@@ -118,6 +118,8 @@ template <class WorldType>
   if (is_binary(text)) {
     auto packed = from_binary<detail::PackedSet<WorldType>>(text, where);
     lanes = detail::LaneTable(packed.lanes);
+    if (lanes.names().size() != packed.lanes.size())
+      throw ParameterError(where, "lists a lane twice", "it is damaged: take another copy");
     set = std::move(packed.set);
   } else {
     set = from_json<ScenarioSet<WorldType>>(text, where, &lanes);

@@ -80,8 +80,8 @@ struct ClosedLoopScore {
   template <class World>
   [[nodiscard]] bool is_comfortable(World& world, Slot slot, double dt) {
     double const along = Acceleration{}(world, slot), across = LateralAcceleration{}(world, slot);
-    bool comfortable = along >= -comfortable_deceleration && along <= comfortable_acceleration &&
-                       std::abs(across) <= comfortable_lateral_acceleration;
+    bool comfortable = along >= -comfort_deceleration && along <= comfort_acceleration &&
+                       std::abs(across) <= comfort_lateral_acceleration;
     if (world.history_size() > 0) {
       auto const &now = world.frame().agents[slot].state, &before = world.history(1).agents[slot].state;
       double const turn = geometry::angle_difference(now.heading, before.heading) / dt;

@@ -29,9 +29,9 @@ struct ProposalScoring {
   double comfort = 2.0;
   double route = 20.0;
   double look_ahead = 0.9;
-  double lowest_acceleration = -comfortable_deceleration;
-  double highest_acceleration = comfortable_acceleration;
-  double lateral_acceleration = comfortable_lateral_acceleration;
+  double lowest_acceleration = -comfort_deceleration;
+  double highest_acceleration = comfort_acceleration;
+  double lateral_acceleration = comfort_lateral_acceleration;
   double jerk = 8.37;
   double indifference = 0.01;
 

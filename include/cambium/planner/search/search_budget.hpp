@@ -22,7 +22,8 @@ namespace detail {
 /// list. Prediction counts, but the course that a report shows is simulated after the budget has ended.
 ///
 /// - `start()`: called when planning begins, and again when its search begins; only the first call counts.
-/// - `goes_on(done)`: whether another iteration follows after `done` of them.
+/// - `goes_on(done)`: whether another iteration follows after `done` of them; planners that compare candidates look at
+///   one, whatever it says.
 template <class B>
 concept SearchBudget = std::copyable<B> && requires(B budget, std::size_t done) {
   budget.start();
