@@ -33,7 +33,8 @@ def sentences(text):
         unit = re.search(r'^,\s*"([^"]+)",', found["rest"])
         said = "".join(re.findall(r'"([^"]*)"', found["sentence"]))
         functions = SHARED.findall(text, 0, found.start())
-        for owner in [found["owner"], *functions[-1:]]:
+        alias = re.findall(rf"using {found['owner']} = (\w+)", text[: found.start()])[-1:]
+        for owner in [*(alias or [found["owner"]]), *functions[-1:]]:
             yield (owner, found["field"]), said + (f" [{unit[1]}]" if unit and unit[1] != "-" else "")
 
 
@@ -75,7 +76,7 @@ def link(readme, label):
     folder = os.path.dirname(readme)
 
     def rewrite(found):
-        text, target = found[2], found[3]
+        text, target = " ".join(found[2].split()), found[3]
         if re.match(r"[a-z]+:", target):
             return found[0]
         path, _, anchor = target.partition("#")
@@ -98,8 +99,11 @@ def page(readme):
         title, _, body = file.read().partition("\n")
     parts = re.split(r"(^```.*?^```$)", body, flags=re.S | re.M)
     for i in range(0, len(parts), 2):
-        parts[i] = re.sub(r"^#(#+) (.*)$", lambda h: f"{h[1]} {h[2]} {{#{label}-{slug(h[2])}}}", parts[i], flags=re.M)
+        parts[i] = re.sub(r"^#(#+) (.*)$", lambda h: f"{h[1]} {h[2].replace('`', '')} {{#{label}-{slug(h[2])}}}", parts[i], flags=re.M)
         parts[i] = re.sub(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)", link(readme, label), parts[i])
+        parts[i] = re.sub(r"\*\*(?=\S)(.+?)\*\*", r"<b>\1</b>", parts[i], flags=re.S)  # Doxygen does not end it behind a dot
+        # A quotation mark would end code in single backticks.
+        parts[i] = re.sub(r"`([^`\n]+)`", lambda c: f"``{c[1]}``" if "'" in c[1] else c[0], parts[i])
     body = "".join(parts).replace("/*", "/&zwj;*").replace("*/", "*&zwj;/")
     return f"/** {PAGES[readme]} {title.lstrip('# ')}\n{body}\n*/\n"
 

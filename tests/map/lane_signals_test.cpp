@@ -122,6 +122,29 @@ TEST_CASE("lights of a controller are one; a second controller and a missing sig
   CHECK(count(made, "signal z is not there") == 1);
 }
 
+TEST_CASE("impossible limits, priorities of nobody and signals of one id are findings") {
+  RoadText road{.id = "1", .signals = signal("a", 50, "206", "-1") + signal("a", 60, "205", "-1")};
+  auto const limit = [](std::string const& speed) {
+    return "<lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/><speed "
+           "sOffset=\"0\" max=\"" +
+           speed + "\"/></lane>";
+  };
+  std::string const begin = "<laneSection s=\"0\"><center><lane id=\"0\" type=\"none\"/></center><right>",
+                    end = "</right></laneSection>";
+  for (std::string const speed : {"0", "1e308", "0.01"}) {
+    road.sections = begin + limit(speed) + end;
+    auto const made = load(road.text() +
+                           "<junction id=\"5\" name=\"\"><connection id=\"0\" incomingRoad=\"1\" connectingRoad=\"1\" "
+                           "contactPoint=\"start\"/><priority high=\"1\" low=\"77\"/></junction>");
+    CHECK(count(made, "1 speed limits are not between 0.1 and 200 m/s and count as none; the first: road 1") == 1);
+    CHECK(made.map->lanes()[0].speed_limits.empty());
+    CHECK(count(made, "road 77 of a priority is not there") == 1);
+    CHECK(count(made, "another signal has its id") == 1);
+  }
+  road.sections = begin + limit("no limit") + end;
+  CHECK(count(load(road.text()), "speed limits are not") == 0);
+}
+
 TEST_CASE("codes are found in the spellings of files") {
   auto const meaning = [](char const* country, char const* type, char const* subtype = "") {
     auto const sense = cambium::map::find_signal(country, type, subtype);

@@ -265,6 +265,21 @@ TEST_CASE("what is odd in lanelets is a finding, and the rest is a map") {
         0);
 }
 
+TEST_CASE("a bound that runs the other way is turned, whichever it is") {
+  for (bool const is_left : {true, false})
+    for (double const longer : {0.0, 10.0}) {
+      CAPTURE(is_left);
+      Lanelet lanelet{.id = -1, .left = {{0, 4}, {60, 4}}, .right = {{0, 0}, {60 - longer, 0}}};
+      auto& bound = is_left ? lanelet.left : lanelet.right;
+      std::reverse(bound.begin(), bound.end());
+      auto const made = build_lanelet_map({lanelet});
+      CHECK(text_of(made.diagnostics).find("lanelet -1: its bounds run opposite ways; one was turned") !=
+            std::string::npos);
+      CHECK(lane_of(made, -1).length() == doctest::Approx(60.0 - 0.5 * longer).epsilon(0.01));
+      CHECK(std::cos(lane_of(made, -1).path.pose(5.0).heading) > 0.9);
+    }
+}
+
 TEST_CASE("bounds that cross are left out, and a path that leaves its bounds is a finding") {
   Lanelet const crossing{.id = 1, .left = {{0, 2}, {100, -1}}, .right = {{0, -2}, {100, 1}}},
       touching{.id = 2, .left = {{0, 22}, {100, 20}}, .right = {{0, 18}, {100, 20}}},
@@ -454,7 +469,8 @@ TEST_CASE("a malformed Lanelet2 file is an error with its line, or a map with fi
   auto const error = [](std::string const& changed) { return support::error_of([&] { (void)lanelet2_map(changed); }); };
   CHECK(error("<xsm/>").find("a.osm:1: the root element is <xsm>") == 0);
   CHECK(error("<osm/>").find("it has no usable lanelet") != std::string::npos);
-  CHECK(error(replaced("<tag k='local_x' v='0.000000'/>", "")).find("no lanelet is left") != std::string::npos);
+  CHECK(error(replaced("<tag k='local_x' v='0.000000'/>", "")).find("its nodes have no places: node") !=
+        std::string::npos);
   CHECK(error(replaced("lat='0' lon='0'><tag k='local_x' v='0.000000'/>", "lat='x' lon='0'>")).find("a.osm:3: ") == 0);
   auto const lost = lanelet2_map(replaced("role='right' ref='12'", "role='right' ref='77'"));
   CHECK(lost.lanes.size() == 2);
@@ -478,6 +494,12 @@ TEST_CASE("what a Lanelet2 file says twice, wrongly or in vain is a finding") {
            Case{"type='way' role='right' ref='14'", "type='node' role='right' ref='14'", "is a node, not a way"},
            Case{limit, limit + "<tag k='one_way' v='maybe'/>", "one_way=maybe is neither yes nor no"},
            Case{limit, limit + "<tag k='one_way:bicycle' v='no'/>", "one_way:bicycle=no has no effect"},
+           Case{limit, limit + "<tag k='participant:vehicle' v='Yes'/>",
+                "participant:vehicle=Yes is neither yes nor no"},
+           Case{limit, limit + "<tag k='participant:vehicel' v='yes'/>", "this participant is not known"},
+           Case{limit, limit + "<tag k='turn_direction' v='up'/>",
+                "turn_direction=up is none of left, straight, right"},
+           Case{"v='dashed'/>", "v='dashd'/>", "is a line of the unknown subtype dashd"},
            Case{limit, limit + "<tag k='location' v='city'/>", "location=city is neither urban nor nonurban"},
            Case{limit, limit + "<tag k='dynamic' v='yes'/>", "dynamic=yes is not read"},
            Case{limit, "v='999999999'/>", "speed_limit=999999999 is no speed"},
@@ -641,6 +663,20 @@ TEST_CASE("a node that no lanelet has does not decide where the others lie") {
   CHECK_MESSAGE(made.diagnostics.empty(), text_of(made.diagnostics));
 }
 
+TEST_CASE("a file without a usable place says why") {
+  Osm osm;
+  osm.lanelet(1, {0, 0}, {50, 0});
+  osm.nodes.replace(osm.nodes.find("local_x"), 7, "other_x");
+  CHECK(support::error_of([&] { (void)osm.map(); }).find("node 1001 has no local_x and local_y") != std::string::npos);
+  Osm missing{10.0};
+  missing.lanelet(1, {0, 0}, {50, 0});
+  missing.nodes.erase(0, missing.nodes.find("</node>") + 7);
+  CHECK(support::error_of([&] { (void)missing.map(); }).find("names node 1001, which is not there") !=
+        std::string::npos);
+  CHECK(support::error_of([&] { (void)lanelet2_map("\x1f\x8b packed"); }).find("compressed (gzip); unpack it first") !=
+        std::string::npos);
+}
+
 TEST_CASE("walkways go both ways unless they say otherwise") {
   for (bool const one_way : {false, true}) {
     Osm osm;
@@ -735,9 +771,9 @@ TEST_CASE("a map lies where its lanelets do, on the antimeridian, too") {
     CHECK(lane_of(made, 1).length() == doctest::Approx(400.0).epsilon(0.002));
     CHECK(lane_of(made, 1).path.pose(0.0).position().norm() < 201.0);
   }
-  Osm mixed;
+  Osm mixed{10.0};
   mixed.lanelet(1, {-200, 0}, {200, 0});
-  mixed.nodes.replace(mixed.nodes.find("local_x"), 7, "other_x");
+  mixed.nodes.insert(mixed.nodes.rfind("</node>"), "<tag k='local_x' v='1'/><tag k='local_y' v='1'/>");
   std::vector<Diagnostic> found;
   auto const text = "<osm>\n" + mixed.nodes + mixed.others + "</osm>";
   (void)cambium::map::read_lanelet2(text, {}, "a.osm", found);

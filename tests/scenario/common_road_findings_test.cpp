@@ -261,8 +261,23 @@ TEST_CASE("values that cannot be meant, links given once and ids given twice are
            "<trafficSign id='5'><trafficSignElement><trafficSignID>274</trafficSignID><additionalValue>" + value +
            "</additionalValue></trafficSignElement></trafficSign>";
   };
-  CHECK(has(read(sign("-3")), "its limit -3 m/s is not between 0 and 300"));
-  CHECK(has(read(sign("500")), "its limit 500 m/s is not between 0 and 300"));
+  CHECK(has(read(sign("-3")), "its limit -3 m/s is not between 0.1 and 300"));
+  CHECK(has(read(sign("13.9") + "<trafficSign id='6'/>" + light(7, cycle({{10, "red"}}))),
+            "<trafficSign>: no lanelet refers to it"));
+  CHECK(has(read(lanelet(1, 0) + light(7, cycle({{10, "red"}}))), "<trafficLight>: no lanelet refers to it"));
+  CHECK(
+      has(read(lanelet(1, 0, ref(8)) + light(8, cycle({{10, "red"}}) + "<active>false</active>")), "the light is off"));
+  CHECK(has(
+      read(lanelet(1, 0, "<stopLine><point><x>900</x><y>0</y></point><point><x>900</x><y>3</y></point></stopLine>")),
+      "it lies 850 m from the end of lanelet 1, where it counts"));
+  std::string const problem =
+      "<planningProblem "
+      "id='60'><initialState><position><point><x>1</x><y>-1</y></point></position><orientation><exact>0"
+      "</exact></orientation><time><exact>0</exact></time><velocity><exact>5</exact></velocity></"
+      "initialState><goalState>"
+      "<time><intervalStart>10</intervalStart><intervalEnd>20</intervalEnd></time></goalState></planningProblem>";
+  CHECK(has(read(lanelet(1, 0) + problem + problem), "planning problem 60 is there already"));
+  CHECK(has(read(sign("500")), "its limit 500 m/s is not between 0.1 and 300"));
   for (std::string const word : {"-4", "abc"})
     CHECK(has(read(lanelet(1, 0, "<speedLimit>" + word + "</speedLimit>")), "\"" + word + "\" is no speed"));
   CHECK(has(read(lanelet(1, 0, "<stopLine><point><x>40</x><y>0</y></point></stopLine>")), "it has 1 points, not two"));

@@ -568,6 +568,21 @@ TEST_CASE("a replaced agent's goal is where its track ends, and its route the la
   CHECK(world.state(AgentId{7}).x < 101.0);
 }
 
+TEST_CASE("a vehicle that heads against its lane gets a way of its own, and one that jumps is named") {
+  auto traffic = cars();
+  for (auto& state : traffic.tracks[0].states) state.heading += geometry::pi;
+  auto const recorded = recorded_scenario<Sim>(traffic, {});
+  REQUIRE(recorded.diagnostics.size() == 1);
+  CHECK(recorded.diagnostics[0].sentence.find("it got a way of its own") != std::string::npos);
+  auto world = recorded.make_world();
+  CHECK(world.size() > 0);
+  traffic.tracks[0].states.back().x += 20'000.0;
+  traffic.tracks[0].states.back().y += 20'000.0;
+  CHECK(support::error_of([&] {
+          (void)recorded_scenario<Sim>(traffic, {});
+        }).find("track " + std::to_string(traffic.tracks[0].id) + ": free corridor: it is longer than 10 km") == 0);
+}
+
 TEST_CASE("the route of a track on lanelets counts lanes side by side once") {
   std::vector<map::Lanelet> lanelets;
   for (auto const& [id, x, y] : {std::tuple{1, 0.0, 0.0}, {2, 0.0, -3.5}, {3, 100.0, 0.0}})

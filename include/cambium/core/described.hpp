@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "cambium/core/ids.hpp"
 
@@ -47,17 +51,29 @@ struct Parameter : ParameterInfo {
 };
 
 namespace detail {
-/// What a field consists of: of a list or an optional what its elements consist of, whose type may be incomplete.
+/// What an element of a list consists of: its type, which may still be incomplete, or of a list in it that one's.
+template <class Element>
+struct ElementPart {
+  using type = Element;
+};
+template <class Inner>
+struct ElementPart<std::vector<Inner>> : ElementPart<Inner> {};
+template <class Inner>
+struct ElementPart<std::optional<Inner>> : ElementPart<Inner> {};
+template <class Inner, std::size_t size>
+struct ElementPart<std::array<Inner, size>> : ElementPart<Inner> {};
+
+/// What a field consists of: of a list or an optional what its elements consist of.
 template <class Field>
 struct PartOf {
   using type = Field;
 };
 template <class Field>
 requires requires { typename Field::value_type; }
-struct PartOf<Field> : PartOf<typename Field::value_type> {};
+struct PartOf<Field> : ElementPart<typename Field::value_type> {};
 template <class Field>
 requires requires { typename Field::element_type::value_type; }  // a pointer to a list
-struct PartOf<Field> : PartOf<typename Field::element_type::value_type> {};
+struct PartOf<Field> : ElementPart<typename Field::element_type::value_type> {};
 template <>
 struct PartOf<std::string> {
   using type = std::string;

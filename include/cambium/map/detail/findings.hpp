@@ -27,12 +27,13 @@ struct Findings {
   }
 };
 
-/// " (finding)", to be appended to the message that no road or lane is left: the first warning that says that a road, a
-/// lane or another element was left out, or the warning to which that one refers. If there is none, the first warning
-/// about an element of roads or lanes; empty without one.
+/// " (finding)", to be appended to the message that no road, lane or lanelet is left: the first warning that says that
+/// a road, a lane or another element was left out, or the warning to which that one refers. If there is none, the first
+/// warning about an element of roads or lanes; empty without one.
 [[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
-  constexpr std::array<std::string_view, 11> carrying{"road",  "planView",   "geometry", "line", "arc",        "spiral",
-                                                      "poly3", "paramPoly3", "lanes",    "lane", "laneSection"};
+  constexpr std::array<std::string_view, 17> carrying{
+      "road", "planView", "geometry",    "line", "arc", "spiral", "poly3",  "paramPoly3", "lanes",
+      "lane", "lanelet",  "laneSection", "node", "nd",  "way",    "member", "relation"};
   for (char const* words : {"the road was left out", "the lane was left out", "left out", ""}) {
     Diagnostic const* before = nullptr;
     for (auto const& finding : findings) {

@@ -39,7 +39,7 @@ class Lanelet2Reader : private OsmLanelets {
     set_priorities();
     report_unread();
     if (lanelets_.empty())
-      throw MapError(context_.file(), "it has no usable lanelet",
+      throw MapError(context_.file(), "it has no usable lanelet" + likely_cause(context_.found()),
                      "give a Lanelet2 map: relations with the tag type=lanelet and members left and right");
     std::vector<Lanelet> result;
     for (auto& read : lanelets_) result.push_back(std::move(read.lanelet));
@@ -136,7 +136,12 @@ class Lanelet2Reader : private OsmLanelets {
       if (!limit)
         return warn(node,
                     "neither its sign nor its sign_type is a speed, such as de274-50 or \"50 km/h\"; it was left out");
-      for (auto const i : subject) lanelets_[i].lanelet.speed_limit = limit;
+      for (auto const i : subject) {
+        if (auto const [known, is_new] = limits_.emplace(i, *limit); !is_new && known->second != *limit)
+          warn(node,
+               "lanelet " + std::to_string(lanelets_[i].lanelet.id) + " has another limit already; this one counts");
+        lanelets_[i].lanelet.speed_limit = limit;
+      }
     } else {
       for (auto const kind : signs_of(node)) give(node, subject, kind);
     }
@@ -264,6 +269,7 @@ class Lanelet2Reader : private OsmLanelets {
   }
 
   std::map<std::vector<Id>, std::string> lights_;            ///< by their heads
+  std::map<std::size_t, double> limits_;                     ///< of lanelets, by the elements [m/s]
   std::set<std::pair<std::size_t, std::size_t>> go_before_;  ///< pairs of lanelets, as the elements say
 };
 
@@ -283,9 +289,7 @@ CAMBIUM_COLD LaneletMap load_lanelet2(std::string const& path, std::optional<Lan
   std::vector<Diagnostic> diagnostics;
   auto lanelets =
       read_lanelet2(detail::read_map_file(path, "give a Lanelet2 map in OSM's XML (.osm)"), origin, path, diagnostics);
-  auto result = build_lanelet_map(std::move(lanelets), options, path);
-  result.diagnostics.insert(result.diagnostics.begin(), diagnostics.begin(), diagnostics.end());
-  return result;
+  return build_lanelet_map(std::move(lanelets), options, path, std::move(diagnostics));
 }
 
 }  // namespace cambium::map

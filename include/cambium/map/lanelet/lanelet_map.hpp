@@ -30,9 +30,10 @@ struct LaneletMap {
 /// changed where they do. Lanelets that cross others, with those that leave or enter the same road beside them, lie in
 /// a junction. What cannot be used is left out, with a diagnostic: bounds that cross or have fewer than two points,
 /// links to lanelets that are not there or begin more than 0.4 m away, neighbours elsewhere. Traffic keeps to the
-/// right. Throws `MapError` where no lanelet is left, and as `build_map`. O(n^2) comparisons of boxes for n lanelets.
+/// right. The diagnostics begin with those `found` before. Throws `MapError` where no lanelet is left, and as
+/// `build_map`. O(n^2) comparisons of boxes for n lanelets.
 [[nodiscard]] LaneletMap build_lanelet_map(std::vector<Lanelet> lanelets, MapOptions const& options = {},
-                                           std::string const& file = "lanelets");
+                                           std::string const& file = "lanelets", std::vector<Diagnostic> found = {});
 
 /// How far before the lanelet's end `place` lies, along the middle between its bounds [m], to a micrometre: of a stop
 /// line. 0 for what lies behind its end or farther from its begin than it is long, or without usable bounds. O(points).

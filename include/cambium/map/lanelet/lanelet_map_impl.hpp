@@ -43,7 +43,7 @@ class LaneletMapMaker {
   [[nodiscard]] LaneletMap make(MapOptions const& options) {
     for (std::size_t i = 0; i < network_.lanelets.size(); ++i) add_road(i);
     if (of_road_.empty())
-      throw MapError(findings_.file, "no lanelet is left to make a map of" + likely_cause_here(),
+      throw MapError(findings_.file, "no lanelet is left to make a map of" + likely_cause(findings_.list),
                      "give lanelets with a left and a right bound");
     add_priorities();
     LaneletMap result;
@@ -65,11 +65,8 @@ class LaneletMapMaker {
   }
 
  private:
-  [[nodiscard]] std::string likely_cause_here() const {
-    for (auto const& finding : findings_.list)
-      if (finding.sentence.find("left out") != std::string::npos) return " (" + to_string(finding) + ")";
-    return {};
-  }
+  /// The name of a lanelet's road; "-1" is none in OpenDRIVE.
+  [[nodiscard]] static std::string name_of(std::int64_t id) { return id == -1 ? "lanelet -1" : std::to_string(id); }
 
   /// Straight from each height to the next; they are those of the ends of the geometries.
   [[nodiscard]] static std::vector<CubicRecord> elevation_along(std::vector<Geometry> const& line,
@@ -84,7 +81,7 @@ class LaneletMapMaker {
     auto const& lanelet = network_.lanelets[i];
     auto const& center = network_.centers[i];
     try {
-      auto const id = std::to_string(lanelet.id);
+      auto const id = name_of(lanelet.id);
       auto plan = lane_along(curve_around(center.points, center.corners, network_.headings[i][0],
                                           network_.headings[i][1], "lanelet " + id),
                              center.widths, id);
@@ -127,8 +124,7 @@ class LaneletMapMaker {
                           "it goes before lanelet " + std::to_string(other) +
                               ", with which it shares no junction; that priority was ignored");
         else
-          made[numbers.at(id->second)].priorities.push_back(
-              {std::to_string(network_.lanelets[i].id), std::to_string(other)});
+          made[numbers.at(id->second)].priorities.push_back({name_of(network_.lanelets[i].id), name_of(other)});
       }
   }
 
@@ -266,10 +262,9 @@ class LaneletMapMaker {
 }  // namespace detail
 
 CAMBIUM_COLD LaneletMap build_lanelet_map(std::vector<Lanelet> lanelets, MapOptions const& options,
-                                          std::string const& file) {
-  std::vector<Diagnostic> diagnostics;
-  auto result = detail::LaneletMapMaker(std::move(lanelets), file, diagnostics).make(options);
-  result.diagnostics = std::move(diagnostics);
+                                          std::string const& file, std::vector<Diagnostic> found) {
+  auto result = detail::LaneletMapMaker(std::move(lanelets), file, found).make(options);
+  result.diagnostics = std::move(found);
   return result;
 }
 

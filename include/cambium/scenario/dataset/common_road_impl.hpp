@@ -99,6 +99,7 @@ class CommonRoadReader : private CommonRoadLanes {
     if (!stands) read_trajectory(node, track);
     for (auto& state : track.states) shift(state, *shape);
     if (!stands) read_occupancies(node, track);
+    if (!stands && track.states.size() == 1) note(node, name + " has no motion; it is there for one instant");
     if (!shape->is_rectangle) track.outline = outline_from_middle(node, *shape);
     if (!stands && !track.outline.empty()) note(node, name + " drives as the rectangle around it");
     if (!ids_.insert(*id).second) return warn(node, name + " is there already; the second one was left out");
@@ -203,6 +204,8 @@ class CommonRoadReader : private CommonRoadLanes {
     xml::for_each_child(node, "goalState", [&](Node child) {
       if (auto goal = goal_of(child)) problem.goals.push_back(std::move(*goal));
     });
+    if (std::any_of(traffic_.problems.begin(), traffic_.problems.end(), [&](auto const& p) { return p.id == *id; }))
+      return warn(node, "planning problem " + std::to_string(*id) + " is there already; the second one was left out");
     if (problem.goals.empty()) warn(node, "planning problem " + std::to_string(*id) + " has no goal");
     traffic_.problems.push_back(std::move(problem));
   }

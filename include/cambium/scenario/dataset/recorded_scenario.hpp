@@ -55,7 +55,8 @@ struct TrackWay {
 
 /// The way of `track` from `begin` to `end` [s]; its states are those recorded, and interpolated ones at both ends.
 /// Vehicles and bicycles get a route, unless they are off the lanes for more than a few states between their first and
-/// their last one there. Nothing where the track does not move there. Throws `MapError` as `build_free_corridor`.
+/// their last one there. Nothing where the track does not move there. Throws `Error` for a
+/// track without such a way, as one that jumps by kilometres.
 /// O(states log lanes).
 [[nodiscard]] std::optional<TrackWay> way_of(Map const& map, Track const& track, double begin, double end);
 

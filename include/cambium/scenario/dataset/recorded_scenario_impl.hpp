@@ -14,6 +14,7 @@
 #include "cambium/core/constants.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
@@ -29,12 +30,14 @@ class LaneMatcher {
  public:
   explicit LaneMatcher(Map const& map) : map_(map) {}
 
-  /// Takes the next state; whether it is on a lane.
+  /// Takes the next state; whether it is on a lane that runs its way.
   bool add(State const& state) {
     constexpr double aside = 2.0;  // [m] from the lane
     geometry::Pose const pose{state.x, state.y, state.heading};
     auto const hit = last_ ? map_.nearest_lane(pose, *last_, aside) : map_.nearest_lane(pose, aside);
     if (!hit) return false;
+    double const along = map_.lane(hit->lane).path.pose(hit->s).heading;
+    if (std::abs(geometry::angle_difference(state.heading, along)) > 0.5 * geometry::pi) return false;
     last_ = hit;
     if (lanes_.empty() || lanes_.back() != hit->lane) lanes_.push_back(hit->lane);
     return true;
@@ -236,7 +239,11 @@ CAMBIUM_COLD std::optional<TrackWay> way_of(Map const& map, Track const& track, 
       return way;
     }
   }
-  way.road = detail::own_way(map, track, way.states);
+  try {
+    way.road = detail::own_way(map, track, way.states);
+  } catch (Error const& problem) {
+    throw Error("track " + std::to_string(track.id), problem.what(), "repair or leave out the track");
+  }
   return way;
 }
 

@@ -56,6 +56,14 @@ struct MergeBegin {
   return nullptr;
 }
 
+/// Moves the places of a lane's signals and permitted changes.
+template <class Moved>
+void move_places(Lane& lane, Moved const& moved) {
+  for (auto& signal : lane.signals) signal.s = moved(signal.s);
+  for (auto* changes : {&lane.left_changes, &lane.right_changes})
+    for (auto& stretch : *changes) stretch = {moved(stretch.begin), moved(stretch.end)};
+}
+
 /// Lets a lane's path swing over onto that of its neighbour `onto`, of whatever road, and go on with it to its end,
 /// from where `merge_begin` says.
 inline void swing_over(Lane& lane, Lane const& onto, double longest) {
@@ -107,18 +115,13 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
     widths.push_back(widths.back());
     stations.push_back(stations.back());
   }
-  auto const move_places = [&lane](auto moved) {  // of its signals and changes
-    for (auto& signal : lane.signals) signal.s = moved(signal.s);
-    for (auto* changes : {&lane.left_changes, &lane.right_changes})
-      for (auto& stretch : *changes) stretch = {moved(stretch.begin), moved(stretch.end)};
-  };
-  move_places([&](double s) { return lane.station_at(s); });
+  move_places(lane, [&](double s) { return lane.station_at(s); });
   lane.merges_into = onto.id;
   lane.merge_begin = from;
   lane.path = geometry::Line::from_samples(path);
   lane.widths = std::move(widths);
   lane.stations = std::move(stations);
-  move_places([&](double station) { return lane.position_at(station); });
+  move_places(lane, [&](double station) { return lane.position_at(station); });
 }
 
 /// Lets lanes that end while their neighbour goes on merge into that one, with a finding; from the lanes that go on

@@ -21,14 +21,36 @@
 /// What a document says about driving in lanes: speed limits, lane changes, signs and lights.
 namespace cambium::map::detail {
 
-/// The limit of the last of `records` that begins at or before `s` [m/s]; nothing where that one has none, or none
-/// above 0.
+/// Whether a number is a speed limit for road traffic [m/s]; infinite: there is none.
+[[nodiscard]] inline bool is_speed_limit(double limit) { return limit >= 0.1 && (limit <= 200.0 || std::isinf(limit)); }
+
+/// The limit of the last of `records` that begins at or before `s` [m/s]; nothing where that one has none that is one.
 template <class Record>
 [[nodiscard]] std::optional<double> limit_in_force(std::vector<Record> const& records, double s) {
   auto const next =
       std::upper_bound(records.begin(), records.end(), s + 1e-9, [](double v, Record const& r) { return v < r.s; });
   auto const limit = next == records.begin() ? std::nullopt : (next - 1)->limit;
-  return limit && *limit > 0.0 ? limit : std::nullopt;
+  return limit && is_speed_limit(*limit) ? limit : std::nullopt;
+}
+
+/// Reports limits that are none: how many, and the first.
+inline void report_speed_limits(OpenDriveDocument const& document, Findings& findings) {
+  int count = 0;
+  std::string first;
+  auto const look = [&](opendrive::RoadElement const& road, std::optional<double> limit) {
+    if (!limit || is_speed_limit(*limit)) return;
+    if (count++ == 0) first = "road " + road.id + ": " + cambium::detail::rounded_text(*limit) + " m/s";
+  };
+  for (auto const& road : document.roads) {
+    for (auto const& type : road.types) look(road, type.limit);
+    for (auto const& section : road.lane_sections)
+      for (auto const& lane : section.lanes)
+        for (auto const& speed : lane.speeds) look(road, speed.limit);
+  }
+  if (count > 0)
+    findings.add(
+        Severity::warning, 0, "speed", {},
+        std::to_string(count) + " speed limits are not between 0.1 and 200 m/s and count as none; the first: " + first);
 }
 
 /// Fills `Lane::speed_limits`: the lane's own records where one gives a limit ("no limit" is one), else the road's. Of

@@ -29,8 +29,9 @@ class LaneSignals {
       : document_(document), lanes_(lanes), findings_(findings) {
     for (std::size_t r = 0; r < document.roads.size(); ++r)
       for (auto const& signal : document.roads[r].signals) {
-        signals_.emplace(signal.id, &signal);
         roads_.emplace(&signal, r);
+        if (!signals_.emplace(signal.id, &signal).second)
+          report(signal, r, "another signal has its id; references and controllers mean that one");
       }
     of_road_.resize(document.roads.size());
     for (auto const& lane : lanes) of_road_[index_of(lane.road)].push_back(lane.id);

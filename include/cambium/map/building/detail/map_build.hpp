@@ -43,9 +43,10 @@ namespace cambium::map::detail {
 }
 
 /// The document's junctions, in its order (the roads' junction ids count so), with the roads and lanes that belong to
-/// them. Priorities between roads that are not in the map are left out.
+/// them. Priorities between roads that are not in the map are left out, with a finding.
 [[nodiscard]] inline std::vector<Junction> make_junctions(OpenDriveDocument const& document,
-                                                          std::span<Road const> roads, std::span<Lane const> lanes) {
+                                                          std::span<Road const> roads, std::span<Lane const> lanes,
+                                                          Findings& findings) {
   auto const ids = places_of(document.roads);
   std::vector<Junction> junctions;
   for (auto const& written : document.junctions) {
@@ -56,6 +57,10 @@ namespace cambium::map::detail {
       if (ids.contains(priority.high) && ids.contains(priority.low))
         junction.priorities.push_back(
             {static_cast<RoadId>(ids.at(priority.high)), static_cast<RoadId>(ids.at(priority.low))});
+      else
+        findings.add(Severity::warning, 0, "priority", "junction " + written.id,
+                     "road " + (ids.contains(priority.high) ? priority.low : priority.high) +
+                         " of a priority is not there; it was left out");
     junctions.push_back(std::move(junction));
   }
   for (auto const& road : roads)
@@ -118,6 +123,7 @@ class MapBuild {
 
   /// Limits, marks, signs and lights.
   void set_rules() {
+    report_speed_limits(document_, findings_);
     set_speed_limits(document_, parts_.lanes);
     set_lane_changes(document_, parts_.lanes);
     parts_.lights = LaneSignals(document_, parts_.lanes, findings_).set();
@@ -126,7 +132,7 @@ class MapBuild {
   /// Junctions and overlaps: all that a world needs.
   [[nodiscard]] std::shared_ptr<Map const> finish(ExactPath const& path) {
     report_paths(parts_.lanes, lane_findings());
-    parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
+    parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes, findings_);
     number_lane_coordinate();
     find_overlaps(
         parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },

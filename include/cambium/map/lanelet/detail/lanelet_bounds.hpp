@@ -77,11 +77,29 @@ struct Rail {
   return evened(bound).size() < 2 ? "a bound has fewer than two points that are a centimetre apart" : nullptr;
 }
 
-/// Why bounds cannot be used; null where they can. Bounds that lie on the wrong sides are exchanged, which `swapped`
-/// reports.
-[[nodiscard]] inline char const* fault_of_bounds(Lanelet& lanelet, bool& swapped) {
+/// Whether bounds run opposite ways: each begins nearer to the other's end.
+[[nodiscard]] inline bool run_opposite_ways(std::span<Point const> left, std::span<Point const> right) {
+  auto const apart = [](Point const& p, Point const& q) { return (p - q).norm(); };
+  return apart(left.front(), right.front()) + apart(left.back(), right.back()) >
+         apart(left.front(), right.back()) + apart(left.back(), right.front());
+}
+
+/// Why bounds cannot be used; null where they can. Of bounds that run opposite ways, that one is turned which then lies
+/// on its side, which `turned` reports; bounds that lie on the wrong sides are exchanged, which `swapped` reports.
+[[nodiscard]] inline char const* fault_of_bounds(Lanelet& lanelet, bool& swapped, bool& turned) {
   for (auto const* bound : {&lanelet.left, &lanelet.right})
     if (auto const* const fault = fault_of_bound(*bound)) return fault;
+  turned = run_opposite_ways(lanelet.left, lanelet.right);
+  if (turned) {
+    std::reverse(lanelet.left.begin(), lanelet.left.end());
+    bool const left_lies_right = twice_area_between(lanelet.left, lanelet.right) > 0.0;
+    if (left_lies_right) {  // the other one is the wrong one
+      std::reverse(lanelet.left.begin(), lanelet.left.end());
+      std::reverse(lanelet.right.begin(), lanelet.right.end());
+    }
+    auto& heights = left_lies_right ? lanelet.right_heights : lanelet.left_heights;
+    std::reverse(heights.begin(), heights.end());
+  }
   double const twice_area = twice_area_between(lanelet.left, lanelet.right);
   if (!(std::abs(twice_area) > 0.02)) return "there is no room between its bounds";
   swapped = twice_area > 0.0;

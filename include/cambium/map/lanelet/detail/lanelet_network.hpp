@@ -112,8 +112,8 @@ class LaneletNetwork {
   void take(std::vector<Lanelet> given) {
     drop_some_heights(given);
     for (auto& lanelet : given) {
-      bool swapped = false;
-      if (auto const* const fault = fault_of_bounds(lanelet, swapped)) {
+      bool swapped = false, turned = false;
+      if (auto const* const fault = fault_of_bounds(lanelet, swapped, turned)) {
         report(Severity::warning, lanelet, std::string(fault) + "; the lanelet was left out");
         continue;
       }
@@ -121,6 +121,7 @@ class LaneletNetwork {
         report(Severity::warning, lanelet, "its bounds cross each other; the lanelet was left out");
         continue;
       }
+      if (turned) report(Severity::warning, lanelet, "its bounds run opposite ways; one was turned");
       if (swapped) report(Severity::warning, lanelet, "its left bound lies to the right; the bounds were exchanged");
       if (!places_.emplace(lanelet.id, lanelets.size()).second) {
         report(Severity::warning, lanelet, "its id is taken already; the lanelet was left out");

@@ -46,21 +46,25 @@ struct LaneletSubtype {
 /// The kind of lane of a lanelet: that of its subtype, unless tags `participant:...` say who may use it.
 [[nodiscard]] inline std::optional<LaneType> lane_type_of(pugi::xml_node node, LaneletSubtype const* subtype) {
   constexpr std::string_view prefix = "participant:";
-  bool any = false, cars = false, buses = false, bicycles = false, walkers = false, emergency = false;
+  bool any = false, buses = false, bicycles = false, walkers = false, emergency = false;
+  std::optional<bool> vehicles, cars;  // the more special word counts
   for (auto child = node.first_child(); child; child = child.next_sibling()) {
     std::string_view const key = child.attribute("k").value();
     if (local_name(child) != "tag" || !key.starts_with(prefix)) continue;
+    auto const truth = osm_truth(child.attribute("v").value());
+    if (!truth) continue;
     any = true;
-    if (osm_truth(child.attribute("v").value()) != true) continue;
     auto const who = key.substr(prefix.size());
-    cars = cars || who == "vehicle" || who == "vehicle:car";
+    if (who == "vehicle") vehicles = truth;
+    if (who == "vehicle:car") cars = truth;
+    if (!*truth) continue;
     buses = buses || who == "vehicle:bus" || who == "vehicle:taxi";
     emergency = emergency || who == "vehicle:emergency";
     bicycles = bicycles || who == "bicycle";
     walkers = walkers || who.starts_with("pedestrian");
   }
   if (!any) return subtype != nullptr ? std::optional(subtype->type) : std::nullopt;
-  if (cars) return LaneType::driving;
+  if (cars.value_or(vehicles.value_or(false))) return LaneType::driving;
   if (buses) return LaneType::bus;
   if (bicycles) return LaneType::biking;
   if (walkers) return LaneType::walking;
@@ -74,8 +78,8 @@ struct LaneletSubtype {
   auto const number_end = std::min(text.find_first_not_of("0123456789."), text.size());
   auto const value = parse_number<double>(text.substr(0, number_end));
   auto const unit = trimmed(text.substr(number_end));
-  constexpr double fastest = 1000.0;  // in any unit
-  if (!value || !(*value > 0.0 && *value < fastest)) return std::nullopt;
+  constexpr double slowest = 1.0, fastest = 1000.0;  // in any unit
+  if (!value || !(*value >= slowest && *value < fastest)) return std::nullopt;
   if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return *value / 3.6;
   if (unit == "mph" || unit == "m/h") return *value * 0.44704;
   if (unit == "m/s" || unit == "mps") return value;
@@ -95,6 +99,24 @@ struct LaneletSubtype {
   return !osm_truth(osm_tag(node, one_way_of(type))).value_or(usual);
 }
 
+/// Reports participants that are not known.
+inline void report_participants(XmlContext& context, pugi::xml_node node) {
+  constexpr std::string_view prefix = "participant:";
+  constexpr std::string_view known[] = {
+      "vehicle",           "vehicle:car",   "vehicle:car:electric", "vehicle:car:combustion",
+      "vehicle:bus",       "vehicle:truck", "vehicle:taxi",         "vehicle:motorcycle",
+      "vehicle:emergency", "bicycle",       "pedestrian",           "train"};
+  for (auto child = node.first_child(); child; child = child.next_sibling()) {
+    std::string_view const key = child.attribute("k").value(), value = child.attribute("v").value();
+    if (local_name(child) != "tag" || !key.starts_with(prefix)) continue;
+    auto const said = std::string(key) + "=" + std::string(value);
+    if (!osm_truth(value))
+      context.report(Severity::warning, child, said + " is neither yes nor no; it was left out");
+    else if (std::find(std::begin(known), std::end(known), key.substr(prefix.size())) == std::end(known))
+      context.report(Severity::warning, child, said + ": this participant is not known; it has no effect");
+  }
+}
+
 /// Reports tags of a lanelet that have no effect, or not the written one.
 inline void report_lanelet_tags(XmlContext& context, pugi::xml_node node, LaneType type) {
   auto const warn = [&](pugi::xml_node at, std::string sentence) {
@@ -106,7 +128,7 @@ inline void report_lanelet_tags(XmlContext& context, pugi::xml_node node, LaneTy
     auto const said = std::string(key) + "=" + std::string(value);
     auto const truth = osm_truth(value);
     bool const is_one_way = key == "one_way" || (key == one_way_of(type) && !key.empty());
-    if ((key.starts_with("one_way") || key.starts_with("participant:")) && !truth)
+    if (key.starts_with("one_way") && !truth)
       warn(child, said + " is neither yes nor no; it was left out");
     else if (key.starts_with("one_way:") && !is_one_way)
       context.report(Severity::info, child,
@@ -117,6 +139,8 @@ inline void report_lanelet_tags(XmlContext& context, pugi::xml_node node, LaneTy
           said + ": lanes of the kind " + std::string(to_string(type)) + " are used one way only, as their bounds run");
     else if (key == "location" && value != "urban" && value != "nonurban")
       context.report(Severity::info, child, said + " is neither urban nor nonurban; urban was taken");
+    else if (key == "turn_direction" && value != "left" && value != "right" && value != "straight")
+      warn(child, said + " is none of left, straight, right; it says only that the lanelet lies in a junction");
     else if (key == "dynamic" && truth != false)
       context.report(Severity::info, child, said + " is not read: limits and rules hold always");
     else if (key == "no_drivable_lane" && truth != false && is_drivable(type))

@@ -109,6 +109,7 @@ class OsmLanelets {
     if (!id) return;
     auto const word = osm_tag(node, "subtype");
     auto const* const subtype = lanelet_subtype(word);
+    report_participants(context_, node);
     auto const type = lane_type_of(node, subtype);
     if (!type)
       return context_.report(Severity::info, node,
@@ -147,9 +148,7 @@ class OsmLanelets {
   void set_bounds(Read& read, Id left, Id right) const {
     OsmBound l{left}, r{right};
     auto a = ways_.points_of(l), b = ways_.points_of(r);
-    auto const apart = [](Point const& p, Point const& q) { return (p - q).norm(); };
-    if (apart(a.front(), b.front()) + apart(a.back(), b.back()) >
-        apart(a.front(), b.back()) + apart(a.back(), b.front())) {
+    if (run_opposite_ways(a, b)) {
       r.reversed = true;
       std::reverse(b.begin(), b.end());
     }

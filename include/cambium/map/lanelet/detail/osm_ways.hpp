@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -196,6 +197,10 @@ class OsmWays {
                               " has no local_x and local_y, as others have: all places come from lat and lon");
           break;
         }
+    if (!local.empty() && first && box.min_x == box.max_x && box.min_y == box.max_y)
+      throw MapError(context_.file(),
+                     "its nodes have no places: " + context_.found().back().sentence + ", which are all one",
+                     "give all nodes of lanelets numbers as local_x and local_y");
     auto const origin = given.value_or(first ? middle_of(box) : Lanelet2Origin{});
     if (first) warn_if_far(box, origin);
     UtmProjection const projection(origin.latitude, origin.longitude);
@@ -229,6 +234,11 @@ class OsmWays {
       if (auto const word = osm_tag(node, key); !word.empty() && !osm_truth(word))
         warn(node, "way " + std::to_string(*id) + ": " + key + "=" + std::string(word) +
                        " is neither yes nor no; it was left out");
+    constexpr std::string_view looks[] = {"", "solid", "solid_solid", "dashed", "dashed_solid", "solid_dashed"};
+    if ((way.type == "line_thin" || way.type == "line_thick") &&
+        std::find(std::begin(looks), std::end(looks), way.subtype) == std::end(looks))
+      warn(node, "way " + std::to_string(*id) + " is a line of the unknown subtype " + way.subtype +
+                     "; nobody crosses it, unless a tag lane_change permits it");
     way.change = osm_truth(osm_tag(node, "lane_change"));
     way.change_left = osm_truth(osm_tag(node, "lane_change:left"));
     way.change_right = osm_truth(osm_tag(node, "lane_change:right"));

@@ -93,6 +93,7 @@ class XmlContext {
 
   [[nodiscard]] int line(pugi::xml_node node) { return lines_.line(node.offset_debug()); }
   [[nodiscard]] std::string const& file() const { return findings_.file; }
+  [[nodiscard]] std::vector<Diagnostic> const& found() const { return findings_.list; }
 
   // What reports is rare: out of the way, the rest of the reader fits into the processor's instruction cache.
   [[gnu::cold]] void report(Severity severity, pugi::xml_node node, std::string sentence) {

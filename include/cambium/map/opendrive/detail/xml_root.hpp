@@ -18,6 +18,7 @@ namespace cambium::map::detail {
 [[nodiscard]] inline pugi::xml_node parse_root(pugi::xml_document& xml, std::string_view text, std::string const& file,
                                                std::string_view name, std::string const& remedy) {
   require_readable(text.size(), file);
+  if (text.starts_with("\x1f\x8b")) throw MapError(file, "the file is compressed (gzip)", "unpack it first: gunzip");
   if (auto const narrow = narrowed(text); narrow.empty())
     XmlCounter(text).check(file);
   else

@@ -92,6 +92,12 @@ class CommonRoadLanes : protected CommonRoadSignals {
       for (auto const id : lanelet.predecessors) named_as_predecessor_.emplace(id, lanelet.id);
     for (auto const& pending : arrows_) hang_arrow(pending);
     report_one_sided();
+    xml::for_each_child(root, [&](Node node, std::string_view name) {
+      if (name != "trafficSign" && name != "trafficLight") return;
+      auto const id = xml::parse_number<Id>(node.attribute("id").value());
+      if (id && (signs_.contains(*id) || lights_.contains(*id)) && !used_.contains(*id))
+        warn(node, "no lanelet refers to it; it has no effect");
+    });
     if (!traffic_.lanelets.empty()) make_map(options);
   }
 
@@ -207,10 +213,10 @@ class CommonRoadLanes : protected CommonRoadSignals {
       read_type(node, lanelet);
     } else if (name == "speedLimit") {
       auto const limit = xml::parse_number<double>(text_of(node));
-      if (limit && *limit > 0.0 && *limit < 1000.0)
+      if (limit && *limit >= 0.1 && *limit < 300.0)
         lanelet.speed_limit = limit;
       else
-        warn(node, "\"" + std::string(text_of(node)) + "\" is no speed between 0 and 1000 m/s; it was left out");
+        warn(node, "\"" + std::string(text_of(node)) + "\" is no speed between 0.1 and 300 m/s; it was left out");
     } else if (name == "userOneWay" || name == "userBidirectional") {
       add_user(node, name == "userBidirectional", users);
     } else if (name == "trafficSignRef" || name == "trafficLightRef") {
@@ -229,7 +235,15 @@ class CommonRoadLanes : protected CommonRoadSignals {
     if (ends.size() == 1 || ends.size() > 2)
       warn(node, "it has " + std::to_string(ends.size()) + " points, not two; it lies at the end of lanelet " +
                      std::to_string(lanelet.id));
-    double const before = ends.size() == 2 ? map::distance_before_end(lanelet, 0.5 * (ends[0] + ends[1])) : 0.0;
+    double before = 0.0;
+    if (ends.size() == 2) {
+      geometry::Point const middle = 0.5 * (ends[0] + ends[1]);
+      before = map::distance_before_end(lanelet, middle);
+      constexpr double farthest = 20.0;  // [m] behind its end
+      if (before == 0.0 && !lanelet.left.empty() && (middle - lanelet.left.back()).norm() > farthest)
+        warn(node, "it lies " + rounded_text(std::round((middle - lanelet.left.back()).norm())) +
+                       " m from the end of lanelet " + std::to_string(lanelet.id) + ", where it counts");
+    }
     xml::for_each_child(node, [&](Node child, std::string_view name) {
       if (name != "trafficSignRef" && name != "trafficLightRef") return;
       if (auto const ref = reference(child)) add_signal(child, *ref, before, lanelet);
@@ -242,6 +256,7 @@ class CommonRoadLanes : protected CommonRoadSignals {
   }
 
   void add_signal(Node node, Id ref, double before, map::Lanelet& lanelet) {
+    used_.insert(ref);
     if (auto const sign = signs_.find(ref); sign != signs_.end()) {
       if (sign->second.speed) lanelet.speed_limit = sign->second.speed;
       if (sign->second.kind) add_once(lanelet, {*sign->second.kind, before, {}});
@@ -368,8 +383,9 @@ class CommonRoadLanes : protected CommonRoadSignals {
   }
 
   void make_map(map::MapOptions const& options) {
-    auto made = map::build_lanelet_map(traffic_.lanelets, options, context_.file());
-    for (auto& found : made.diagnostics) traffic_.diagnostics.push_back(std::move(found));
+    auto made =
+        map::build_lanelet_map(traffic_.lanelets, options, context_.file(), std::exchange(traffic_.diagnostics, {}));
+    traffic_.diagnostics = std::move(made.diagnostics);
     traffic_.map = std::move(made.map);
     traffic_.lanes = std::move(made.lanes);
     for (auto const& light : traffic_.map->lights()) {
@@ -381,6 +397,7 @@ class CommonRoadLanes : protected CommonRoadSignals {
 
   std::map<Id, std::size_t> places_;            ///< of the lanelets
   std::multimap<Id, Id> named_as_predecessor_;  ///< and the lanelets that name them so
+  std::set<Id> used_;                           ///< signs and lights that lanelets refer to
   std::vector<PendingArrow> arrows_;
   std::map<std::pair<Id, Id>, map::Arrow> turns_;  ///< of a lanelet and one behind it
 };

@@ -93,10 +93,10 @@ class CommonRoadSignals : protected CommonRoadValues {
                   "signs of the number " + std::string(word) + " have no effect: they do not say who goes first");
       if (sense->meaning != map::SignalMeaning::speed_limit) return;
       auto const limit = number(element, "additionalValue");
-      if (limit && *limit > 0.0 && *limit < 300.0)
+      if (limit && *limit >= 0.1 && *limit < 300.0)
         sign.speed = limit;
       else if (limit)
-        warn(element, "its limit " + rounded_text(*limit) + " m/s is not between 0 and 300; it was left out");
+        warn(element, "its limit " + rounded_text(*limit) + " m/s is not between 0.1 and 300; it was left out");
     });
     return sign;
   }
@@ -121,7 +121,10 @@ class CommonRoadSignals : protected CommonRoadValues {
   /// The phases of a light: green, then yellow; all else is red. One that is always red has a green of 0 s.
   [[nodiscard]] map::LightPlan plan_of(Node node) {
     auto const active = xml::find_child(node, "active");
-    if (auto const word = text_of(active); word == "false" || word == "0") return {};
+    if (auto const word = text_of(active); word == "false" || word == "0") {
+      note(active, "the light is off");
+      return {};
+    }
     if (active && text_of(active) != "true" && text_of(active) != "1")
       warn(active, "\"" + std::string(text_of(active)) + "\" is neither true nor false; true was taken");
     auto const cycle = xml::find_child(node, "cycle");
