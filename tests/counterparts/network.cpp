@@ -6,12 +6,13 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <sstream>
 #include <string>
 
 #include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/scenario/dataset/common_road.hpp"
 #include "cambium/scenario/dataset/common_road_writer.hpp"
+
+#include "../support/named_by.hpp"
 
 namespace {
 
@@ -23,20 +24,8 @@ struct Network {
   std::vector<Diagnostic> diagnostics;
 };
 
-/// The ids of lanelets that findings name: the numbers behind "lanelet", "successor", "predecessor" and "neighbour".
-std::set<std::string> named_by(std::vector<Diagnostic> const& diagnostics) {
-  std::set<std::string> const kinds{"lanelet", "successor", "predecessor", "neighbour"};
-  std::set<std::string> ids;
-  for (auto const& found : diagnostics) {
-    std::istringstream words(found.ids + " " + found.sentence);
-    for (std::string before, word; words >> word; before = word)
-      if (kinds.contains(before)) ids.insert(word.substr(0, word.find_first_not_of("0123456789")));
-  }
-  return ids;
-}
-
 /// Rows "id successors left right may_change_left may_change_right limit", lists joined by commas, "-" for none; a
-/// minus before an id: that lanelet, driven backwards. Then "named" and what findings name.
+/// minus before an id: that lanelet, driven backwards. Then rows "named" with two lanelets that a finding is about.
 void print(Network const& network) {
   std::map<LaneId, std::string> names;
   for (auto const& [id, lane] : network.lanes) {
@@ -56,9 +45,7 @@ void print(Network const& network) {
                 beside(lane.left_neighbor).c_str(), beside(lane.right_neighbor).c_str(), !lane.left_changes.empty(),
                 !lane.right_changes.empty(), lane.speed_limit_at(0.5 * lane.length()) * 3.6);
   }
-  std::printf("named");
-  for (auto const& id : named_by(network.diagnostics)) std::printf(" %s", id.c_str());
-  std::printf("\n");
+  for (auto const& [a, b] : support::named_by(network.diagnostics)) std::printf("named %s %s\n", a.c_str(), b.c_str());
 }
 
 }  // namespace

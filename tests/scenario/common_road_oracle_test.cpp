@@ -1,34 +1,18 @@
 // CommonRoad's networks against tables of who follows whom and lies beside whom, counted by others.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "cambium/scenario/dataset/common_road.hpp"
 
 #include "../support/corpus.hpp"
+#include "../support/named_by.hpp"
 
 using namespace cambium;
-
-namespace {
-
-/// The ids of lanelets that findings name: the numbers behind "lanelet", "successor", "predecessor" and "neighbour".
-std::set<std::string> named_by(std::vector<Diagnostic> const& diagnostics) {
-  std::set<std::string> const kinds{"lanelet", "successor", "predecessor", "neighbour"};
-  std::set<std::string> ids;
-  for (auto const& found : diagnostics) {
-    std::istringstream words(found.ids + " " + found.sentence);
-    for (std::string before, word; words >> word; before = word)
-      if (kinds.contains(before)) ids.insert(word.substr(0, word.find_first_not_of("0123456789")));
-  }
-  return ids;
-}
-
-}  // namespace
 
 TEST_CASE("lanelets of CommonRoad follow each other and lie beside each other as counted, or a finding names them") {
   for (std::string const name : {"DEU_Test-1_1_T-1", "ZAM-Ramp-1_1-T-1", "ZAM_Over-1_1", "ZAM_Tjunction-1_42_T-1",
@@ -43,7 +27,7 @@ TEST_CASE("lanelets of CommonRoad follow each other and lie beside each other as
       names[lane] = std::to_string(id);
       if (auto const back = traffic.map->lane(lane).opposite; is_valid(back)) names[back] = "-" + names[lane];
     }
-    auto const named = named_by(traffic.diagnostics);
+    auto const named = support::named_by(traffic.diagnostics);
     for (auto const& row : corpus::table(*table)) {
       CAPTURE(row[0]);
       auto const& lane = traffic.map->lane(traffic.lanes.at(std::stoll(row[0])));
@@ -53,7 +37,8 @@ TEST_CASE("lanelets of CommonRoad follow each other and lie beside each other as
       auto const beside = [&](LaneId id) { return is_valid(id) ? names.at(id) : std::string(); };
       bool const as_in_file = successors == row[2] && beside(lane.left_neighbor) == (row[6] == "same" ? row[5] : "") &&
                               beside(lane.right_neighbor) == (row[8] == "same" ? row[7] : "");
-      CHECK((as_in_file || named.contains(row[0])));
+      auto const is_named = [&](auto const& pair) { return pair.first == row[0]; };
+      CHECK((as_in_file || std::any_of(named.begin(), named.end(), is_named)));
       CHECK(successors == row[4]);  // where the bounds meet
       if (is_valid(lane.left_neighbor) && row[9] != "unsaid") CHECK(!lane.left_changes.empty() == (row[9] == "yes"));
       if (is_valid(lane.right_neighbor) && row[10] != "unsaid")
