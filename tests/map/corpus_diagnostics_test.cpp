@@ -23,7 +23,7 @@ struct Expected {
 
 Expected const expected[]{
     {"4way_intersection", 0, 0},
-    {"Crossing8Course", 0, 0},
+    {"Crossing8Course", 1, 0},  // signs that have no effect
     {"DR_CHN_Merging_ZS_partial_v02", 0, 0},
     {"DR_DEU_Merging_MT_v01_centered", 0, 0},
     {"DR_DEU_Merging_MT_v01_shifted", 0, 0},
@@ -38,10 +38,10 @@ Expected const expected[]{
     {"fabriksgatan", 0, 0},
     {"highway_example_with_merge_and_split", 0, 0},
     {"lane_border", 0, 0},
-    {"libopendrive_test", 26, 6, true},  // the same, and lanes that do not meet by 2 to 5 cm
-    {"multi_intersections", 2, 0},       // links of one side, signs that limit the speed
-    {"parking_demo", 0, 0},
-    {"positive18", 1, 17},                // signs that are not known, or stand at no lane
+    {"libopendrive_test", 26, 6, true},   // the same, and lanes that do not meet by 2 to 5 cm
+    {"multi_intersections", 6, 0},        // links of one side, signs that limit the speed or have no effect
+    {"parking_demo", 0, 1},               // a lane without width between two bays
+    {"positive18", 4, 17},                // signs that are not known, or stand at no lane
     {"XCrossStopAllWay", 0, 1},           // signs of type 1022
     {"road_corridor_test", 0, 10, true},  // links to nowhere, and to the wrong ends of roads
     {"route_strategy_test_road", 0, 0},
@@ -50,7 +50,7 @@ Expected const expected[]{
     {"threeway_intersection", 0, 0},
     {"two_plus_one", 0, 0},
     {"velodrome", 0, 0},
-    {"virtual_junction_priority", 0, 1, true},  // a junction without connections
+    {"virtual_junction_priority", 0, 2, true},  // a junction without connections, a lane without width
 };
 
 }  // namespace

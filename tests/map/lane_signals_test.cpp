@@ -123,7 +123,9 @@ TEST_CASE("lights of a controller are one; a second controller and a missing sig
 }
 
 TEST_CASE("impossible limits, priorities of nobody and signals of one id are findings") {
-  RoadText road{.id = "1", .signals = signal("a", 50, "206", "-1") + signal("a", 60, "205", "-1")};
+  RoadText road{.id = "1",
+                .signals = signal("a", 50, "206", "-1") + signal("a", 60, "205", "-1") +
+                           "<signalReference id=\"a\" s=\"70\" t=\"0\" orientation=\"+\"/>"};
   auto const limit = [](std::string const& speed) {
     return "<lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/><speed "
            "sOffset=\"0\" max=\"" +
@@ -139,7 +141,7 @@ TEST_CASE("impossible limits, priorities of nobody and signals of one id are fin
     CHECK(count(made, "1 speed limits are not between 0.1 and 200 m/s and count as none; the first: road 1") == 1);
     CHECK(made.map->lanes()[0].speed_limits.empty());
     CHECK(count(made, "road 77 of a priority is not there") == 1);
-    CHECK(count(made, "another signal has its id") == 1);
+    CHECK(count(made, "several signals have its id; it means the first") == 1);
   }
   road.sections = begin + limit("no limit") + end;
   CHECK(count(load(road.text()), "speed limits are not") == 0);

@@ -39,7 +39,7 @@ std::map<std::string, std::vector<std::string>> const optional_headers{
     {"pugixml.hpp",
      {"cambium/map/opendrive.hpp", "cambium/map/opendrive_impl.hpp", "cambium/map/opendrive/",
       "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps", "cambium/benchmark",
-      "cambium/map/lanelet/lanelet2", "cambium/map/lanelet/detail/osm_ways", "cambium/map/lanelet/detail/lanelet_tags",
+      "cambium/map/lanelet/lanelet2", "cambium/map/lanelet/detail/osm_", "cambium/map/lanelet/detail/lanelet_tags",
       "cambium/scenario/dataset/common_road", "cambium/scenario/dataset/detail/common_road"}},
     {"nlohmann/json.hpp",
      {"cambium/core/json", "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps",

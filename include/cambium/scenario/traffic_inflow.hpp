@@ -230,10 +230,10 @@ class TrafficInflow {
   [[nodiscard]] AgentId try_to_enter(WorldType& world, TrafficSource const& source, AgentSpec& spec) const {
     auto const& path = source.way ? source.way->corridors[source.way->main].center : world.map().lane(source.lane).path;
     auto const pose = path.pose(behind_begin + spec.shape.rear);
-    if (is_occupied(world, pose, spec.shape)) return none<AgentId>;
     spec.position = pose.position();
     spec.heading = pose.heading;
     spec.road = source.way;
+    if (is_occupied(world, pose, spec.shape)) return none<AgentId>;
     auto const id = world.add(spec);
     if (auto const speed = speed_of(world, id); speed >= 0.0) {
       auto state = world.state(id);

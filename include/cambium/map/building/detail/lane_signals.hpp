@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <tuple>
@@ -30,8 +31,7 @@ class LaneSignals {
     for (std::size_t r = 0; r < document.roads.size(); ++r)
       for (auto const& signal : document.roads[r].signals) {
         roads_.emplace(&signal, r);
-        if (!signals_.emplace(signal.id, &signal).second)
-          report(signal, r, "another signal has its id; references and controllers mean that one");
+        if (!signals_.emplace(signal.id, &signal).second) shared_ids_.insert(signal.id);
       }
     of_road_.resize(document.roads.size());
     for (auto const& lane : lanes) of_road_[index_of(lane.road)].push_back(lane.id);
@@ -44,10 +44,13 @@ class LaneSignals {
       auto const& road = document_.roads[r];
       for (auto const& signal : road.signals) add(r, signal, signal);
       for (auto const& reference : road.signal_references)
-        if (auto const signal = signals_.find(reference.id); signal != signals_.end())
+        if (auto const signal = signals_.find(reference.id); signal != signals_.end()) {
+          if (shared_ids_.contains(reference.id))
+            report(reference, r, "several signals have its id; it means the first");
           add(r, *signal->second, reference);
-        else
+        } else {
           report(reference, r, "no road has the signal that it refers to; it was left out");
+        }
     }
     for (auto& lane : lanes_) {
       cambium::detail::stable_sort(lane.signals, [](LaneSignal const& s) { return std::tuple(s.s, s.kind, s.light); });
@@ -238,9 +241,10 @@ class LaneSignals {
   Findings& findings_;
   std::vector<std::vector<LaneId>> of_road_;
   std::map<std::string, std::string> controllers_;  ///< by signal
-  std::map<std::string, Signal const*> signals_;
-  std::map<Signal const*, std::size_t> roads_;  ///< of each signal
-  std::map<Signal const*, bool> given_;         ///< whether a lane has it, of signs and lights that count
+  std::map<std::string, Signal const*> signals_;    ///< the first of each id
+  std::set<std::string> shared_ids_;                ///< of several signals
+  std::map<Signal const*, std::size_t> roads_;      ///< of each signal
+  std::map<Signal const*, bool> given_;             ///< whether a lane has it, of signs and lights that count
   std::map<std::string, Count> counts_;
   std::map<std::size_t, std::vector<Bulb>> bulbs_;  ///< the first of each head, by road
   std::map<std::string, LightId> ids_;
