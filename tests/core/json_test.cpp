@@ -76,6 +76,16 @@ struct Ways {
   }
 };
 
+/// A struct that is large by default, on the heap.
+struct Full {
+  std::vector<double> numbers = std::vector<double>(1000, 1.0);
+
+  static constexpr char const* name = "full";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("numbers", &Full::numbers, "-", any_finite, "many"));
+  }
+};
+
 struct Third {
   float share = 0.3f;
 
@@ -270,6 +280,9 @@ TEST_CASE("many keys are no reason to wait, and a text takes memory by its size"
   CHECK(from_json<Books>(books(1000)).value.size() == 1000);
   auto const before = support::allocated_bytes();
   CHECK(refusal<Books>(books(200'000)).find("f.json: expands to far more memory") == 0);
+  std::string full = "{\"value\": [{}";
+  for (int i = 1; i < 50'000; ++i) full += ", {}";
+  CHECK(refusal<One<std::vector<Full>>>(full + "]}").find("expands to far more memory") != std::string::npos);
   CHECK(support::allocated_bytes() - before < 100'000'000);
 }
 

@@ -141,7 +141,7 @@ TEST_CASE("impossible limits, priorities of nobody and signals of one id are fin
     CHECK(count(made, "1 speed limits are not between 0.1 and 200 m/s and count as none; the first: road 1") == 1);
     CHECK(made.map->lanes()[0].speed_limits.empty());
     CHECK(count(made, "road 77 of a priority is not there") == 1);
-    CHECK(count(made, "several signals have its id; it means the first") == 1);
+    CHECK(count(made, "references to an id of several signals mean the first one") == 1);
   }
   road.sections = begin + limit("no limit") + end;
   CHECK(count(load(road.text()), "speed limits are not") == 0);
@@ -192,7 +192,8 @@ TEST_CASE("a sign between two sections counts once, and one that has no effect i
   auto const idle = fork(signal("a", 50.0, "1000002", "-1") + signal("b", 50.0, "1000002", "") +
                          signal("c", 50.0, "-1", "") + signal("d", 50.0, "", ""));
   CHECK(count(idle,
-              "signals of type 1000002 of country \"OpenDRIVE\" have no effect: they do not say who goes first "
+              "signals of type 1000002 of country \"OpenDRIVE\" have no effect: only signs of priority and lights for "
+              "vehicles have "
               "(2 of them)") == 1);
   CHECK(count(idle, "signals without a type have no effect (2 of them)") == 1);
 }

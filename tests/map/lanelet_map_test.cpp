@@ -280,6 +280,50 @@ TEST_CASE("a bound that runs the other way is turned, whichever it is") {
     }
 }
 
+TEST_CASE("a ring that nearly closes is not turned") {
+  for (double const gap : {-0.02, 0.02}) {
+    Lanelet ring{.id = 1};
+    for (int k = 0; k <= 60; ++k) {
+      double const turn = k / 60.0;
+      auto const at = [&](double radius, double end) {
+        double const angle = (2.0 * 3.14159265 - end / radius) * turn;
+        return Point{radius * std::cos(angle), radius * std::sin(angle)};
+      };
+      ring.left.push_back(at(18.0, gap));
+      ring.right.push_back(at(21.5, -gap));
+    }
+    auto const made = build_lanelet_map({ring});
+    CHECK(text_of(made.diagnostics).find("opposite ways") == std::string::npos);
+    CHECK(lane_of(made, 1).length() == doctest::Approx(2.0 * 3.14159265 * 19.75).epsilon(0.01));
+  }
+}
+
+TEST_CASE("a lane over itself is cut where its limit changes, on the right turn and height") {
+  auto const map =
+      cambium::parse_opendrive(
+          "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road name=\"\" length=\"140\" id=\"1\" "
+          "junction=\"-1\"><planView><geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"140\"><arc "
+          "curvature=\"0.0666666667\"/></geometry></planView><elevationProfile><elevation s=\"0\" a=\"0\" "
+          "b=\"0.08\" c=\"0\" d=\"0\"/></elevationProfile><lanes><laneSection s=\"0\"><center><lane id=\"0\" "
+          "type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" "
+          "b=\"0\" c=\"0\" d=\"0\"/><speed sOffset=\"0\" max=\"10\"/><speed sOffset=\"100\" max=\"20\"/>"
+          "</lane></right></laneSection></lanes></road></OpenDRIVE>")
+          .map;
+  auto const lanelets = cambium::map::lanelets_of(*map, 1);
+  REQUIRE(lanelets.size() == 2);
+  auto const length = [](std::vector<Point> const& points) {
+    double sum = 0.0;
+    for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
+    return sum;
+  };
+  CHECK(length(lanelets[0].left) == doctest::Approx(100.0).epsilon(0.01));
+  CHECK(length(lanelets[0].right) == doctest::Approx(100.0 * 18.5 / 15.0).epsilon(0.01));
+  CHECK(length(lanelets[1].left) == doctest::Approx(40.0).epsilon(0.01));
+  CHECK(lanelets[0].left_heights.front() == doctest::Approx(0.0).epsilon(0.01));
+  CHECK(lanelets[0].right_heights.back() == doctest::Approx(8.0).epsilon(0.01));
+  CHECK(lanelets[1].right_heights.back() == doctest::Approx(11.2).epsilon(0.01));
+}
+
 TEST_CASE("bounds that cross are left out, and a path that leaves its bounds is a finding") {
   Lanelet const crossing{.id = 1, .left = {{0, 2}, {100, -1}}, .right = {{0, -2}, {100, 1}}},
       touching{.id = 2, .left = {{0, 22}, {100, 20}}, .right = {{0, 18}, {100, 20}}},
@@ -410,8 +454,8 @@ TEST_CASE("INTERACTION's test map lies where its tracks do") {
   auto const file = corpus::find("scenarios/interaction/TestScenarioForScripts.osm");
   if (!file) return;
   auto const made = cambium::load_lanelet2(file->string());
-  CHECK(made.diagnostics.size() == 2);
-  for (auto const& found : made.diagnostics) CHECK(found.sentence.find("location=city is neither") == 0);
+  REQUIRE(made.diagnostics.size() == 1);
+  CHECK(made.diagnostics[0].sentence == "location=city is neither urban nor nonurban; urban was taken (2 of them)");
   REQUIRE(made.lanes.size() == 2);
   auto const right = lane_of(made, 20).path, left = lane_of(made, 21).path;
   CHECK(right.pose(0.0).x == doctest::Approx(1.0).epsilon(1e-4));
@@ -490,7 +534,7 @@ TEST_CASE("what a Lanelet2 file says twice, wrongly or in vain is a finding") {
                 "</relation></osm>",
                 "rule 30 is there already"},
            Case{end, "<relation id='5'><tag k='type' v='regulatory_element'/></relation></osm>",
-                "rules without a subtype are not read: 1"},
+                "rules without a subtype are not read"},
            Case{"type='way' role='right' ref='14'", "type='node' role='right' ref='14'", "is a node, not a way"},
            Case{limit, limit + "<tag k='one_way' v='maybe'/>", "one_way=maybe is neither yes nor no"},
            Case{limit, limit + "<tag k='one_way:bicycle' v='no'/>", "one_way:bicycle=no has no effect"},
@@ -499,14 +543,14 @@ TEST_CASE("what a Lanelet2 file says twice, wrongly or in vain is a finding") {
            Case{limit, limit + "<tag k='participant:vehicel' v='yes'/>", "this participant is not known"},
            Case{limit, limit + "<tag k='turn_direction' v='up'/>",
                 "turn_direction=up is none of left, straight, right"},
-           Case{"v='dashed'/>", "v='dashd'/>", "is a line of the unknown subtype dashd"},
+           Case{"v='dashed'/>", "v='dashd'/>", "lines of the subtype dashd are not known"},
            Case{limit, limit + "<tag k='location' v='city'/>", "location=city is neither urban nor nonurban"},
            Case{limit, limit + "<tag k='dynamic' v='yes'/>", "dynamic=yes is not read"},
            Case{limit, "v='999999999'/>", "speed_limit=999999999 is no speed"},
            Case{"ref='30'/>", "ref='30'/><member type='way' role='centerline' ref='12'/>",
-                "members in the role \"centerline\" of lanelets are not read: 1"},
+                "members in the role \"centerline\" of lanelets are not read"},
            Case{"role='yield' ref='21'/>", "role='yield' ref='21'/><member type='way' role='cancel_line' ref='15'/>",
-                "members in the role \"cancel_line\" of rules are not read: 1"},
+                "members in the role \"cancel_line\" of rules are not read"},
            Case{end, "<node id='99'/></osm>", "node 99 has no place, and no lanelet needs it"},
            Case{limit, limit + "<tag k='no_drivable_lane' v='yes'/>", "no_drivable_lane=yes is not read"},
            Case{limit, limit + "<tag k='speed_limit:vehicle:bus' v='30'/>", "speed_limit:vehicle:bus=30 is not read"},
@@ -651,7 +695,7 @@ TEST_CASE("speed signs and signs without effect that a rule of signs names are f
   auto const text = text_of(osm.map().diagnostics);
   CHECK(text.find("its sign de274-50 is a speed, which only an element of the subtype speed_limit sets") !=
         std::string::npos);
-  CHECK(text.find("signs de267 have no effect: they do not say who goes first: 1") != std::string::npos);
+  CHECK(text.find("signs de267 have no effect: only those of priority and speed have") != std::string::npos);
 }
 
 TEST_CASE("a node that no lanelet has does not decide where the others lie") {
@@ -674,6 +718,37 @@ TEST_CASE("a file without a usable place says why") {
   CHECK(support::error_of([&] { (void)missing.map(); }).find("names node 1001, which is not there") !=
         std::string::npos);
   CHECK(support::error_of([&] { (void)lanelet2_map("\x1f\x8b packed"); }).find("compressed (gzip); unpack it first") !=
+        std::string::npos);
+}
+
+TEST_CASE("who may use a lanelet is said by the most special word") {
+  using cambium::map::LaneType;
+  std::string const vehicles = "<tag k='participant:vehicle' v='yes'/>",
+                    no_cars = "<tag k='participant:vehicle:car' v='no'/>",
+                    no_buses = "<tag k='participant:vehicle:bus' v='no'/>";
+  auto const type = [](std::string const& tags) {
+    Osm osm;
+    osm.lanelet(1, {0, 0}, {50, 0}, tags);
+    osm.lanelet(2, {0, 50}, {50, 50});
+    auto const made = osm.map();
+    return made.lanes.contains(1) ? lane_of(made, 1).type : LaneType::none;
+  };
+  CHECK(type(vehicles) == LaneType::driving);
+  CHECK(type(vehicles + no_cars) == LaneType::bus);
+  CHECK(type(vehicles + no_cars + no_buses) == LaneType::none);
+  CHECK(type("<tag k='participant:vehicle' v='no'/><tag k='participant:vehicle:car' v='yes'/>") == LaneType::driving);
+}
+
+TEST_CASE("what all lanelets say wrongly is one finding, and limits that are none are named") {
+  Osm osm;
+  for (int k = 1; k <= 5; ++k)
+    osm.lanelet(k, {0, 10.0 * k}, {50, 10.0 * k}, "<tag k='location' v='city'/><tag k='speed_limit' v='900 km/h'/>");
+  auto const text = text_of(osm.map().diagnostics);
+  CHECK(text.find("location=city is neither urban nor nonurban; urban was taken (5 of them)") != std::string::npos);
+  CHECK(text.find("speed_limit=900 km/h is no speed") != std::string::npos);
+  auto fast = straight(1, {0, 0}, {50, 0});
+  fast.speed_limit = 250.0;
+  CHECK(text_of(build_lanelet_map({fast}).diagnostics).find("its limit of 250 m/s is not between 0.1 and 200") !=
         std::string::npos);
 }
 

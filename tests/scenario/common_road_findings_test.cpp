@@ -261,7 +261,7 @@ TEST_CASE("values that cannot be meant, links given once and ids given twice are
            "<trafficSign id='5'><trafficSignElement><trafficSignID>274</trafficSignID><additionalValue>" + value +
            "</additionalValue></trafficSignElement></trafficSign>";
   };
-  CHECK(has(read(sign("-3")), "its limit -3 m/s is not between 0.1 and 300"));
+  CHECK(has(read(sign("-3")), "its limit -3 m/s is not between 0.1 and 200"));
   CHECK(has(read(sign("13.9") + "<trafficSign id='6'/>" + light(7, cycle({{10, "red"}}))),
             "<trafficSign>: no lanelet refers to it"));
   CHECK(has(read(lanelet(1, 0) + light(7, cycle({{10, "red"}}))), "<trafficLight>: no lanelet refers to it"));
@@ -277,7 +277,7 @@ TEST_CASE("values that cannot be meant, links given once and ids given twice are
       "initialState><goalState>"
       "<time><intervalStart>10</intervalStart><intervalEnd>20</intervalEnd></time></goalState></planningProblem>";
   CHECK(has(read(lanelet(1, 0) + problem + problem), "planning problem 60 is there already"));
-  CHECK(has(read(sign("500")), "its limit 500 m/s is not between 0.1 and 300"));
+  CHECK(has(read(sign("500")), "its limit 500 m/s is not between 0.1 and 200"));
   for (std::string const word : {"-4", "abc"})
     CHECK(has(read(lanelet(1, 0, "<speedLimit>" + word + "</speedLimit>")), "\"" + word + "\" is no speed"));
   CHECK(has(read(lanelet(1, 0, "<stopLine><point><x>40</x><y>0</y></point></stopLine>")), "it has 1 points, not two"));

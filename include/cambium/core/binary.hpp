@@ -94,6 +94,9 @@ class ByteSource final : public FieldSource {
   std::string_view bytes_, where_;
 };
 
+/// How much memory a copy of an object needs besides its own [bytes].
+[[nodiscard]] std::size_t bytes_in(TypeInfo const& type, void const* object);
+
 /// Writes an object. Throws `ParameterError` at `where` if it holds a struct that is not described, a struct nested
 /// more than 200 deep, or a list of more than 16 million elements.
 void write_fields(FieldSink& sink, char const* key, TypeInfo const& type, void const* object, std::string const& where);

@@ -182,8 +182,7 @@ class FieldWriter {
   int depth_ = 0;
 };
 
-/// How much memory a copy of an object needs besides its own [bytes].
-[[nodiscard]] inline std::size_t bytes_in(TypeInfo const& type, void const* object) {
+CAMBIUM_COLD std::size_t bytes_in(TypeInfo const& type, void const* object) {
   if (type.is_trivial) return 0;
   if (type.kind == TypeInfo::Kind::text) return static_cast<std::string const*>(object)->size();
   std::size_t bytes = 0;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/binary.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/json.hpp"
@@ -158,7 +159,7 @@ class JsonReader {
               where(path), "has " + std::to_string(items->size()) + " elements",
               std::string(type.least < type.most ? "give at most " : "give ") + std::to_string(type.most));
         auto const& element = type.element();
-        take_room(items->size() * element.size);
+        take_room(items->size() * (element.size + bytes_in(element, element.usual())));
         return type.fill(object, items->size(), where(path), [&](std::size_t i, void* item, void const*) {
           element.assign(item, element.usual());  // what the file's elements differ from
           read(path.at(i), info, element, item, element.usual(), (*items)[i]);

@@ -37,7 +37,7 @@ class Lanelet2Reader : private OsmLanelets {
     });
     report_missing_rules();
     set_priorities();
-    report_unread();
+    counted_.report();
     if (lanelets_.empty())
       throw MapError(context_.file(), "it has no usable lanelet" + likely_cause(context_.found()),
                      "give a Lanelet2 map: relations with the tag type=lanelet and members left and right");
@@ -119,8 +119,9 @@ class Lanelet2Reader : private OsmLanelets {
     constexpr std::string_view read[] = {"right_of_way", "all_way_stop", "traffic_light", "speed_limit",
                                          "traffic_sign"};
     if (std::find(std::begin(read), std::end(read), subtype) == std::end(read))
-      return count(node, subtype.empty() ? "rules without a subtype are not read"
-                                         : "rules of the subtype " + std::string(subtype) + " are not read");
+      return counted_.add(Severity::info, node,
+                          subtype.empty() ? "rules without a subtype are not read"
+                                          : "rules of the subtype " + std::string(subtype) + " are not read");
     count_other_roles(node, "rules", {"refers", "ref_line", "right_of_way", "yield"});
     if (subject.empty())
       return warn(node, "no lanelet refers to the rule " + std::to_string(*id) + "; it was left out");
@@ -252,7 +253,8 @@ class Lanelet2Reader : private OsmLanelets {
       else if (!sense || sense->meaning == SignalMeaning::speed_limit)
         warn(node, name + " is a speed, which only an element of the subtype speed_limit sets; it was left out");
       else
-        count(node, "signs " + std::string(code) + " have no effect: they do not say who goes first");
+        counted_.add(Severity::info, node,
+                     "signs " + std::string(code) + " have no effect: only those of priority and speed have");
     });
     return kinds;
   }

@@ -87,7 +87,12 @@ class LaneletMapMaker {
                              center.widths, id);
       auto& lane = plan.sections.front().right.front();
       lane.type = lanelet.type;
-      lane.speed_limit = lanelet.speed_limit;
+      if (lanelet.speed_limit && is_speed_limit(*lanelet.speed_limit))
+        lane.speed_limit = lanelet.speed_limit;
+      else if (lanelet.speed_limit)
+        network_.report(Severity::warning, i,
+                        "its limit of " + cambium::detail::rounded_text(*lanelet.speed_limit) +
+                            " m/s is not between 0.1 and 200 m/s, and counts as none");
       if (auto const junction = network_.junction_of[i]; junction != LaneletNetwork::nobody) {
         auto const [at, is_new] = junctions_.try_emplace(junction);
         if (is_new) at->second = builder_.add_junction("junction " + plan.id);

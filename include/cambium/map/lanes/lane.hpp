@@ -42,6 +42,11 @@ struct PathStretch {
   friend bool operator==(PathStretch const&, PathStretch const&) = default;
 };
 
+/// Whether a number is a speed limit for road traffic, 0.1 to 200 m/s; infinite: there is none.
+[[nodiscard]] constexpr bool is_speed_limit(double limit) {
+  return limit >= 0.1 && (limit <= 200.0 || limit == std::numeric_limits<double>::infinity());
+}
+
 /// A speed limit, in force from arc length `begin` [m] on up to the next step.
 struct SpeedStep {
   double begin{};

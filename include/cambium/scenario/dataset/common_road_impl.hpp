@@ -204,7 +204,7 @@ class CommonRoadReader : private CommonRoadLanes {
     xml::for_each_child(node, "goalState", [&](Node child) {
       if (auto goal = goal_of(child)) problem.goals.push_back(std::move(*goal));
     });
-    if (std::any_of(traffic_.problems.begin(), traffic_.problems.end(), [&](auto const& p) { return p.id == *id; }))
+    if (!problem_ids_.insert(*id).second)
       return warn(node, "planning problem " + std::to_string(*id) + " is there already; the second one was left out");
     if (problem.goals.empty()) warn(node, "planning problem " + std::to_string(*id) + " has no goal");
     traffic_.problems.push_back(std::move(problem));
@@ -270,7 +270,7 @@ class CommonRoadReader : private CommonRoadLanes {
     }
   }
 
-  std::set<Id> ids_;  ///< of the obstacles
+  std::set<Id> ids_, problem_ids_;  ///< of the obstacles, and of the planning problems
 };
 
 }  // namespace detail

@@ -37,7 +37,9 @@ class LaneMatcher {
     auto const hit = last_ ? map_.nearest_lane(pose, *last_, aside) : map_.nearest_lane(pose, aside);
     if (!hit) return false;
     double const along = map_.lane(hit->lane).path.pose(hit->s).heading;
-    if (std::abs(geometry::angle_difference(state.heading, along)) > 0.5 * geometry::pi) return false;
+    constexpr double moves = 0.5;  // [m/s]
+    if (state.speed > moves && std::abs(geometry::angle_difference(state.heading, along)) > 0.5 * geometry::pi)
+      return false;
     last_ = hit;
     if (lanes_.empty() || lanes_.back() != hit->lane) lanes_.push_back(hit->lane);
     return true;

@@ -21,9 +21,6 @@
 /// What a document says about driving in lanes: speed limits, lane changes, signs and lights.
 namespace cambium::map::detail {
 
-/// Whether a number is a speed limit for road traffic [m/s]; infinite: there is none.
-[[nodiscard]] inline bool is_speed_limit(double limit) { return limit >= 0.1 && (limit <= 200.0 || std::isinf(limit)); }
-
 /// The limit of the last of `records` that begins at or before `s` [m/s]; nothing where that one has none that is one.
 template <class Record>
 [[nodiscard]] std::optional<double> limit_in_force(std::vector<Record> const& records, double s) {

@@ -46,7 +46,7 @@ class LaneSignals {
       for (auto const& reference : road.signal_references)
         if (auto const signal = signals_.find(reference.id); signal != signals_.end()) {
           if (shared_ids_.contains(reference.id))
-            report(reference, r, "several signals have its id; it means the first");
+            count("references to an id of several signals mean the first one", reference);
           add(r, *signal->second, reference);
         } else {
           report(reference, r, "no road has the signal that it refers to; it was left out");
@@ -124,7 +124,7 @@ class LaneSignals {
     else if (sense->meaning == SignalMeaning::speed_limit)
       count("signs that limit the speed do not count; the limits of roads and lanes do", signal, Severity::info);
     else
-      count(name + " have no effect: they do not say who goes first", signal, Severity::info);
+      count(name + " have no effect: only signs of priority and lights for vehicles have", signal, Severity::info);
   }
 
   [[nodiscard]] static opendrive::Orientation way_of(Lane const& lane) {

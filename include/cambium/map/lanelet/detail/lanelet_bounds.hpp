@@ -77,11 +77,12 @@ struct Rail {
   return evened(bound).size() < 2 ? "a bound has fewer than two points that are a centimetre apart" : nullptr;
 }
 
-/// Whether bounds run opposite ways: each begins nearer to the other's end.
-[[nodiscard]] inline bool run_opposite_ways(std::span<Point const> left, std::span<Point const> right) {
+/// Whether bounds run opposite ways: each begins nearer to the other's end, by more than `least` together [m].
+[[nodiscard]] inline bool run_opposite_ways(std::span<Point const> left, std::span<Point const> right,
+                                            double least = 0.0) {
   auto const apart = [](Point const& p, Point const& q) { return (p - q).norm(); };
   return apart(left.front(), right.front()) + apart(left.back(), right.back()) >
-         apart(left.front(), right.back()) + apart(left.back(), right.front());
+         apart(left.front(), right.back()) + apart(left.back(), right.front()) + least;
 }
 
 /// Why bounds cannot be used; null where they can. Of bounds that run opposite ways, that one is turned which then lies
@@ -89,7 +90,11 @@ struct Rail {
 [[nodiscard]] inline char const* fault_of_bounds(Lanelet& lanelet, bool& swapped, bool& turned) {
   for (auto const* bound : {&lanelet.left, &lanelet.right})
     if (auto const* const fault = fault_of_bound(*bound)) return fault;
-  turned = run_opposite_ways(lanelet.left, lanelet.right);
+  // The ends of a ring, or of a turn right round, lie so close together that they say nothing.
+  double const chord = std::min((lanelet.left.front() - lanelet.left.back()).norm(),
+                                (lanelet.right.front() - lanelet.right.back()).norm());
+  constexpr double shortest = 1.0;  // [m]
+  turned = chord > shortest && run_opposite_ways(lanelet.left, lanelet.right, 0.5 * chord);
   if (turned) {
     std::reverse(lanelet.left.begin(), lanelet.left.end());
     bool const left_lies_right = twice_area_between(lanelet.left, lanelet.right) > 0.0;
@@ -263,8 +268,9 @@ struct LaneletCenter {
   return beside >= 0.5 * way.length();
 }
 
+inline constexpr std::size_t part_length = 16;  ///< segments
+
 /// The boxes of a line's parts of `part_length` segments each.
-inline constexpr std::size_t part_length = 16;
 [[nodiscard]] inline std::vector<geometry::Box> boxes_of_parts(std::span<Point const> line) {
   std::vector<geometry::Box> boxes;
   for (std::size_t i = 0; i + 1 < line.size(); i += part_length)

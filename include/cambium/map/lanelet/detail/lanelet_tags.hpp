@@ -11,6 +11,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/map/lanelet/detail/osm_ways.hpp"
+#include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/road/lane_type.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 
@@ -47,7 +48,7 @@ struct LaneletSubtype {
 [[nodiscard]] inline std::optional<LaneType> lane_type_of(pugi::xml_node node, LaneletSubtype const* subtype) {
   constexpr std::string_view prefix = "participant:";
   bool any = false, buses = false, bicycles = false, walkers = false, emergency = false;
-  std::optional<bool> vehicles, cars;  // the more special word counts
+  std::optional<bool> vehicles, cars, coaches;  // the more special word counts
   for (auto child = node.first_child(); child; child = child.next_sibling()) {
     std::string_view const key = child.attribute("k").value();
     if (local_name(child) != "tag" || !key.starts_with(prefix)) continue;
@@ -57,15 +58,16 @@ struct LaneletSubtype {
     auto const who = key.substr(prefix.size());
     if (who == "vehicle") vehicles = truth;
     if (who == "vehicle:car") cars = truth;
+    if (who == "vehicle:bus") coaches = truth;
     if (!*truth) continue;
-    buses = buses || who == "vehicle:bus" || who == "vehicle:taxi";
+    buses = buses || who == "vehicle:taxi";
     emergency = emergency || who == "vehicle:emergency";
     bicycles = bicycles || who == "bicycle";
     walkers = walkers || who.starts_with("pedestrian");
   }
   if (!any) return subtype != nullptr ? std::optional(subtype->type) : std::nullopt;
   if (cars.value_or(vehicles.value_or(false))) return LaneType::driving;
-  if (buses) return LaneType::bus;
+  if (buses || coaches.value_or(vehicles.value_or(false))) return LaneType::bus;
   if (bicycles) return LaneType::biking;
   if (walkers) return LaneType::walking;
   if (emergency) return LaneType::shoulder;
@@ -78,12 +80,12 @@ struct LaneletSubtype {
   auto const number_end = std::min(text.find_first_not_of("0123456789."), text.size());
   auto const value = parse_number<double>(text.substr(0, number_end));
   auto const unit = trimmed(text.substr(number_end));
-  constexpr double slowest = 1.0, fastest = 1000.0;  // in any unit
-  if (!value || !(*value >= slowest && *value < fastest)) return std::nullopt;
-  if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") return *value / 3.6;
-  if (unit == "mph" || unit == "m/h") return *value * 0.44704;
-  if (unit == "m/s" || unit == "mps") return value;
-  return std::nullopt;
+  double factor = 0.0;  // [m/s]
+  if (unit.empty() || unit == "km/h" || unit == "kmh" || unit == "kph") factor = 1.0 / 3.6;
+  if (unit == "mph" || unit == "m/h") factor = 0.44704;
+  if (unit == "m/s" || unit == "mps") factor = 1.0;
+  if (!value || !is_speed_limit(*value * factor)) return std::nullopt;
+  return *value * factor;
 }
 
 /// The tag that says for a kind of lane alone whether it is one-way.
@@ -100,7 +102,7 @@ struct LaneletSubtype {
 }
 
 /// Reports participants that are not known.
-inline void report_participants(XmlContext& context, pugi::xml_node node) {
+inline void report_participants(CountedFindings& counted, pugi::xml_node node) {
   constexpr std::string_view prefix = "participant:";
   constexpr std::string_view known[] = {
       "vehicle",           "vehicle:car",   "vehicle:car:electric", "vehicle:car:combustion",
@@ -111,16 +113,16 @@ inline void report_participants(XmlContext& context, pugi::xml_node node) {
     if (local_name(child) != "tag" || !key.starts_with(prefix)) continue;
     auto const said = std::string(key) + "=" + std::string(value);
     if (!osm_truth(value))
-      context.report(Severity::warning, child, said + " is neither yes nor no; it was left out");
+      counted.add(Severity::warning, child, said + " is neither yes nor no; it was left out");
     else if (std::find(std::begin(known), std::end(known), key.substr(prefix.size())) == std::end(known))
-      context.report(Severity::warning, child, said + ": this participant is not known; it has no effect");
+      counted.add(Severity::warning, child, said + ": this participant is not known; it has no effect");
   }
 }
 
 /// Reports tags of a lanelet that have no effect, or not the written one.
-inline void report_lanelet_tags(XmlContext& context, pugi::xml_node node, LaneType type) {
-  auto const warn = [&](pugi::xml_node at, std::string sentence) {
-    context.report(Severity::warning, at, std::move(sentence));
+inline void report_lanelet_tags(CountedFindings& counted, pugi::xml_node node, LaneType type) {
+  auto const warn = [&](pugi::xml_node at, std::string const& sentence) {
+    counted.add(Severity::warning, at, sentence);
   };
   for (auto child = node.first_child(); child; child = child.next_sibling()) {
     if (local_name(child) != "tag") continue;
@@ -131,18 +133,18 @@ inline void report_lanelet_tags(XmlContext& context, pugi::xml_node node, LaneTy
     if (key.starts_with("one_way") && !truth)
       warn(child, said + " is neither yes nor no; it was left out");
     else if (key.starts_with("one_way:") && !is_one_way)
-      context.report(Severity::info, child,
-                     said + " has no effect on a lanelet of the kind " + std::string(to_string(type)));
+      counted.add(Severity::info, child,
+                  said + " has no effect on a lanelet of the kind " + std::string(to_string(type)));
     else if (is_one_way && truth == false && !is_drivable(type) && type != LaneType::walking)
-      context.report(
+      counted.add(
           Severity::info, child,
           said + ": lanes of the kind " + std::string(to_string(type)) + " are used one way only, as their bounds run");
     else if (key == "location" && value != "urban" && value != "nonurban")
-      context.report(Severity::info, child, said + " is neither urban nor nonurban; urban was taken");
+      counted.add(Severity::info, child, said + " is neither urban nor nonurban; urban was taken");
     else if (key == "turn_direction" && value != "left" && value != "right" && value != "straight")
       warn(child, said + " is none of left, straight, right; it says only that the lanelet lies in a junction");
     else if (key == "dynamic" && truth != false)
-      context.report(Severity::info, child, said + " is not read: limits and rules hold always");
+      counted.add(Severity::info, child, said + " is not read: limits and rules hold always");
     else if (key == "no_drivable_lane" && truth != false && is_drivable(type))
       warn(child, said + " is not read: its subtype and participants say that it is driven on");
     else if (key.starts_with("speed_limit:"))

@@ -61,6 +61,7 @@ class LanesAsLanelets {
     }
     std::int64_t next = first_id_ + static_cast<std::int64_t>(map_.lanes().size());
     for (auto const& lane : map_.lanes()) {
+      ends_.push_back(find_ends(lane));
       further_ids_.push_back(next);
       if (is_kept(lane.id)) next += static_cast<std::int64_t>(ends_of(lane).size()) - 2;
     }
@@ -77,7 +78,9 @@ class LanesAsLanelets {
   }
 
   /// Where a lane's parts begin and end along its path [m].
-  [[nodiscard]] std::vector<double> ends_of(Lane const& lane) const {
+  [[nodiscard]] std::vector<double> const& ends_of(Lane const& lane) const { return ends_[index_of(lane.id)]; }
+
+  [[nodiscard]] std::vector<double> find_ends(Lane const& lane) const {
     std::vector<double> ends{0.0};
     if (auto const cuts = cuts_.find(section_of(lane)); cuts != cuts_.end())
       for (double const station : cuts->second) ends.push_back(lane.position_at(station));
@@ -93,14 +96,14 @@ class LanesAsLanelets {
   [[nodiscard]] std::int64_t last_id_of(LaneId lane) const { return id_of(lane, ends_of(map_.lane(lane)).size() - 2); }
 
   [[nodiscard]] Lanelet part_of(Lane const& lane, std::size_t k) const {
-    auto const ends = ends_of(lane);
+    auto const& ends = ends_of(lane);
     auto const parts = ends.size() - 1;
     Lanelet lanelet{.id = id_of(lane.id, k)};
     lanelet.left = border(lane, true, ends, k);
     lanelet.right = border(lane, false, ends, k);
     if (has_heights_) {
-      lanelet.left_heights = heights(lane, lanelet.left);
-      lanelet.right_heights = heights(lane, lanelet.right);
+      lanelet.left_heights = heights(lane, lanelet.left, ends[k], ends[k + 1]);
+      lanelet.right_heights = heights(lane, lanelet.right, ends[k], ends[k + 1]);
     }
     if (k + 1 < parts) lanelet.successors.push_back(id_of(lane.id, k + 1));
     if (k > 0) lanelet.predecessors.push_back(id_of(lane.id, k - 1));
@@ -143,10 +146,17 @@ class LanesAsLanelets {
                               lanelet.goes_before.end());
   }
 
-  [[nodiscard]] std::vector<double> heights(Lane const& lane, std::vector<geometry::Point> const& points) const {
-    std::vector<double> result;
-    for (auto const& p : points)
-      result.push_back(map_.road(lane.road).elevation.value(lane.station_at(lane.path.project(p).s)));
+  /// The heights of points along the path from `from` to `to` [m], which may lie over itself: looked for near their
+  /// shares of the way.
+  [[nodiscard]] std::vector<double> heights(Lane const& lane, std::vector<geometry::Point> const& points, double from,
+                                            double to) const {
+    std::vector<double> way{0.0}, result;
+    for (std::size_t i = 1; i < points.size(); ++i) way.push_back(way.back() + (points[i] - points[i - 1]).norm());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      double const near = from + (to - from) * way[i] / way.back();
+      double const s = lane.path.project(points[i], lane.path.find(near)).s;
+      result.push_back(map_.road(lane.road).elevation.value(lane.station_at(s)));
+    }
     return result;
   }
 
@@ -160,13 +170,15 @@ class LanesAsLanelets {
       auto const along = geometry::sin_cos(pose.heading);
       auto const widths = lane.widths_at(s);
       double const aside = left ? widths.left : -widths.right;
-      return line.project({pose.x - aside * along.sin, pose.y + aside * along.cos}).s;
+      auto const near = line.find(line.length() * s / lane.length());  // the border may lie over itself
+      return line.project({pose.x - aside * along.sin, pose.y + aside * along.cos}, near).s;
     };
     double const from = k == 0 ? 0.0 : beside(ends[k]), to = k + 2 == ends.size() ? line.length() : beside(ends[k + 1]);
     constexpr double apart = 0.01;  // [m]
     std::vector<geometry::Point> points{line.pose(from).position()};
-    for (auto const& segment : line.segments())
-      if (segment.s > from + apart && segment.s < to - apart) points.push_back(line.pose(segment.s).position());
+    auto const segments = line.segments();
+    for (std::size_t i = line.find(from); i < segments.size() && segments[i].s < to - apart; ++i)
+      if (segments[i].s > from + apart) points.emplace_back(segments[i].x, segments[i].y);
     points.push_back(line.pose(to).position());
     return points;
   }
@@ -175,6 +187,7 @@ class LanesAsLanelets {
   std::int64_t first_id_;
   bool has_heights_ = false;
   std::map<Section, std::vector<double>> cuts_;  ///< stations along the road, sorted [m]
+  std::vector<std::vector<double>> ends_;        ///< of each lane's parts [m]
   std::vector<std::int64_t> further_ids_;        ///< of each lane's parts behind the first
 };
 

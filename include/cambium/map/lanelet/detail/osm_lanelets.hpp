@@ -25,7 +25,7 @@ namespace cambium::map::detail {
 class OsmLanelets {
  public:
   OsmLanelets(std::string_view text, std::string const& file, std::vector<Diagnostic>& diagnostics)
-      : context_(text, file, diagnostics), ways_(context_) {}
+      : context_(text, file, diagnostics), counted_(context_), ways_(context_, counted_) {}
 
  protected:
   using Id = OsmId;
@@ -54,21 +54,13 @@ class OsmLanelets {
     context_.report(Severity::warning, node, std::move(sentence));
   }
 
-  /// Counts what has no effect; the first one says where.
-  void count(pugi::xml_node node, std::string const& sentence) {
-    ++unread_.try_emplace(sentence, Unread{node, 0}).first->second.count;
-  }
   void count_other_roles(pugi::xml_node node, std::string const& of, std::initializer_list<std::string_view> known) {
     for_each_child(node, "member", [&](pugi::xml_node member) {
       std::string_view const role = member.attribute("role").value();
       if (std::find(known.begin(), known.end(), role) == known.end())
-        count(member, "members in the role \"" + std::string(role) + "\" of " + of + " are not read");
+        counted_.add(Severity::info, member,
+                     "members in the role \"" + std::string(role) + "\" of " + of + " are not read");
     });
-  }
-
-  void report_unread() {
-    for (auto const& [sentence, unread] : unread_)
-      context_.report(Severity::info, unread.node, sentence + ": " + std::to_string(unread.count));
   }
 
   /// Calls `visit(member, ref)` for each member of a relation in `role` that is a `kind`: a way or a relation. Others
@@ -85,6 +77,7 @@ class OsmLanelets {
   }
 
   XmlContext context_;
+  CountedFindings counted_;
   OsmWays ways_;
   std::vector<Read> lanelets_;
   std::map<Id, std::size_t> places_;
@@ -109,7 +102,7 @@ class OsmLanelets {
     if (!id) return;
     auto const word = osm_tag(node, "subtype");
     auto const* const subtype = lanelet_subtype(word);
-    report_participants(context_, node);
+    report_participants(counted_, node);
     auto const type = lane_type_of(node, subtype);
     if (!type)
       return context_.report(Severity::info, node,
@@ -121,7 +114,7 @@ class OsmLanelets {
     read.lanelet.id = *id;
     read.lanelet.line = context_.line(node);
     read.lanelet.type = *type;
-    report_lanelet_tags(context_, node, *type);
+    report_lanelet_tags(counted_, node, *type);
     read.lanelet.both_directions = goes_both_ways(node, *type);
     read.lanelet.in_junction = !osm_tag(node, "turn_direction").empty();
     if (auto const limit = osm_tag(node, "speed_limit"); !limit.empty()) {
@@ -192,13 +185,6 @@ class OsmLanelets {
       other.left_neighbor = read.lanelet.id;
     }
   }
-
-  /// What is not read: the first, and how many.
-  struct Unread {
-    pugi::xml_node node;
-    int count = 0;
-  };
-  std::map<std::string, Unread> unread_;  ///< by what is said about them
 };
 
 }  // namespace cambium::map::detail

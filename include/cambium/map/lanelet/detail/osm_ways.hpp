@@ -64,12 +64,37 @@ struct OsmBound {
   friend auto operator<=>(OsmBound const&, OsmBound const&) = default;
 };
 
+/// Findings to which many elements of a file may give rise: each is said once, where it comes first, and how often.
+class CountedFindings {
+ public:
+  explicit CountedFindings(XmlContext& context) : context_(context) {}
+
+  void add(Severity severity, pugi::xml_node node, std::string const& sentence) {
+    ++found_.try_emplace(sentence, Found{severity, node, 0}).first->second.count;
+  }
+  void report() {
+    for (auto const& [sentence, of] : found_)
+      context_.report(of.severity, of.first,
+                      sentence + (of.count > 1 ? " (" + std::to_string(of.count) + " of them)" : ""));
+  }
+
+ private:
+  struct Found {
+    Severity severity;
+    pugi::xml_node first;
+    int count;
+  };
+
+  XmlContext& context_;
+  std::map<std::string, Found> found_;  ///< by sentence
+};
+
 /// The nodes and ways of a Lanelet2 file, in metres.
 class OsmWays {
   using Id = OsmId;
 
  public:
-  explicit OsmWays(XmlContext& context) : context_(context) {}
+  OsmWays(XmlContext& context, CountedFindings& counted) : context_(context), counted_(counted) {}
 
   /// Throws `MapError` where a node has no place.
   void read(pugi::xml_node root, std::optional<Lanelet2Origin> const& origin) {
@@ -131,13 +156,13 @@ class OsmWays {
     context_.report(Severity::warning, node, std::move(sentence));
   }
 
-  /// The nodes of ways that relations have as bounds: others do not say where a map lies.
+  /// The nodes of bounds and stop lines: others do not say where a map lies.
   [[nodiscard]] static std::set<Id> nodes_of_lanelets(pugi::xml_node root) {
     std::set<Id> ways, nodes;
     for_each_child(root, "relation", [&](pugi::xml_node relation) {
       for_each_child(relation, "member", [&](pugi::xml_node member) {
         std::string_view const role = member.attribute("role").value();
-        if (role != "left" && role != "right") return;
+        if (role != "left" && role != "right" && role != "ref_line") return;
         if (auto const id = parse_number<Id>(member.attribute("ref").value())) ways.insert(*id);
       });
     });
@@ -237,8 +262,9 @@ class OsmWays {
     constexpr std::string_view looks[] = {"", "solid", "solid_solid", "dashed", "dashed_solid", "solid_dashed"};
     if ((way.type == "line_thin" || way.type == "line_thick") &&
         std::find(std::begin(looks), std::end(looks), way.subtype) == std::end(looks))
-      warn(node, "way " + std::to_string(*id) + " is a line of the unknown subtype " + way.subtype +
-                     "; nobody crosses it, unless a tag lane_change permits it");
+      counted_.add(Severity::warning, node,
+                   "lines of the subtype " + way.subtype +
+                       " are not known; nobody crosses one, unless its tag lane_change permits it");
     way.change = osm_truth(osm_tag(node, "lane_change"));
     way.change_left = osm_truth(osm_tag(node, "lane_change:left"));
     way.change_right = osm_truth(osm_tag(node, "lane_change:right"));
@@ -258,6 +284,7 @@ class OsmWays {
   }
 
   XmlContext& context_;
+  CountedFindings& counted_;
   std::map<Id, Point> nodes_;
   std::map<Id, double> heights_;  ///< of nodes that have one
   std::map<Id, OsmWay> ways_;

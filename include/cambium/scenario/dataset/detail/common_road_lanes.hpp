@@ -205,7 +205,8 @@ class CommonRoadLanes : protected CommonRoadSignals {
       auto const ref = reference(node);
       std::string_view const way = node.attribute("drivingDir").value();
       if (way != "same" && way != "opposite")
-        return warn(node, "its drivingDir \"" + std::string(way) + "\" is neither same nor opposite; it was left out");
+        return warn(node, "its drivingDir \"" + std::string(way) +
+                              "\" is neither same nor opposite; this side of the link was left out");
       if (way == "opposite") return note_once(node, "neighbours that are driven the other way are not read");
       if (!ref) return;
       (name == "adjacentLeft" ? lanelet.left_neighbor : lanelet.right_neighbor) = ref;
@@ -213,10 +214,10 @@ class CommonRoadLanes : protected CommonRoadSignals {
       read_type(node, lanelet);
     } else if (name == "speedLimit") {
       auto const limit = xml::parse_number<double>(text_of(node));
-      if (limit && *limit >= 0.1 && *limit < 300.0)
+      if (limit && map::is_speed_limit(*limit))
         lanelet.speed_limit = limit;
       else
-        warn(node, "\"" + std::string(text_of(node)) + "\" is no speed between 0.1 and 300 m/s; it was left out");
+        warn(node, "\"" + std::string(text_of(node)) + "\" is no speed between 0.1 and 200 m/s; it was left out");
     } else if (name == "userOneWay" || name == "userBidirectional") {
       add_user(node, name == "userBidirectional", users);
     } else if (name == "trafficSignRef" || name == "trafficLightRef") {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/signal_codes.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/opendrive/xml.hpp"
@@ -89,14 +90,14 @@ class CommonRoadSignals : protected CommonRoadValues {
       if (kind && kind != map::SignalKind::light)
         sign.kind = kind;
       else if (sense->meaning != map::SignalMeaning::speed_limit)
-        note_once(element,
-                  "signs of the number " + std::string(word) + " have no effect: they do not say who goes first");
+        note_once(element, "signs of the number " + std::string(word) +
+                               " have no effect: only those of priority and speed have");
       if (sense->meaning != map::SignalMeaning::speed_limit) return;
       auto const limit = number(element, "additionalValue");
-      if (limit && *limit >= 0.1 && *limit < 300.0)
+      if (limit && map::is_speed_limit(*limit))
         sign.speed = limit;
       else if (limit)
-        warn(element, "its limit " + rounded_text(*limit) + " m/s is not between 0.1 and 300; it was left out");
+        warn(element, "its limit " + rounded_text(*limit) + " m/s is not between 0.1 and 200; it was left out");
     });
     return sign;
   }
