@@ -147,6 +147,18 @@ TEST_CASE("impossible limits, priorities of nobody and signals of one id are fin
   CHECK(count(load(road.text()), "speed limits are not") == 0);
 }
 
+TEST_CASE("lights of one id on two roads are two lights") {
+  RoadText one{.id = "1", .signals = signal("0", 90, "1000001", "-1")},
+      two{.id = "2", .geometry = "x=\"0\" y=\"50\" hdg=\"0\" length=\"100\"><line/>", .signals = one.signals};
+  auto const made = load(one.text() + two.text());
+  CHECK(made.map->lights().size() == 2);
+  CHECK(lights(made, "1") == Names{"signal 0 of road 1"});
+  CHECK(lights(made, "2") == Names{"signal 0 of road 2"});
+  auto const controlled = load(one.text() + two.text() + "<controller id=\"7\"><control signalId=\"0\"/></controller>");
+  CHECK(controlled.map->lights().size() == 1);
+  CHECK(count(controlled, "controls of an id of several signals mean all of them") == 1);
+}
+
 TEST_CASE("codes are found in the spellings of files") {
   auto const meaning = [](char const* country, char const* type, char const* subtype = "") {
     auto const sense = cambium::map::find_signal(country, type, subtype);

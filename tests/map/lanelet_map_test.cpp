@@ -280,6 +280,36 @@ TEST_CASE("a bound that runs the other way is turned, whichever it is") {
     }
 }
 
+TEST_CASE("short lanelets and rings with a reversed bound are turned") {
+  for (double const length : {0.6, 1.2, 3.0}) {
+    CAPTURE(length);
+    Lanelet lanelet{.id = 1, .left = {{length, 1.75}, {0, 1.75}}, .right = {{0, -1.75}, {length, -1.75}}};
+    auto const made = build_lanelet_map({lanelet});
+    CHECK(lane_of(made, 1).length() == doctest::Approx(length).epsilon(0.01));
+  }
+  Lanelet ring{.id = 1};
+  for (int k = 0; k <= 60; ++k) {
+    double const angle = 0.05 + 6.2 * k / 60.0;
+    ring.left.emplace_back(18.0 * std::cos(angle), 18.0 * std::sin(angle));
+    ring.right.emplace_back(21.5 * std::cos(angle), 21.5 * std::sin(angle));
+  }
+  std::reverse(ring.right.begin(), ring.right.end());
+  auto const made = build_lanelet_map({ring});
+  CHECK(text_of(made.diagnostics).find("opposite ways; one was turned") != std::string::npos);
+  CHECK(lane_of(made, 1).length() == doctest::Approx(6.2 * 19.75).epsilon(0.01));
+}
+
+TEST_CASE("a lane over itself lies within its bounds") {
+  Lanelet loops{.id = 1};
+  for (int k = 0; k <= 90; ++k) {
+    double const angle = 9.4 * k / 90.0, radius = 18.0 + 0.05 * k;
+    loops.left.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    loops.right.emplace_back((radius + 3.5) * std::cos(angle), (radius + 3.5) * std::sin(angle));
+  }
+  auto const text = text_of(build_lanelet_map({loops}).diagnostics);
+  CHECK_MESSAGE(text.find("leaves its bounds") == std::string::npos, text);
+}
+
 TEST_CASE("a ring that nearly closes is not turned") {
   for (double const gap : {-0.02, 0.02}) {
     Lanelet ring{.id = 1};
@@ -322,6 +352,22 @@ TEST_CASE("a lane over itself is cut where its limit changes, on the right turn 
   CHECK(lanelets[0].left_heights.front() == doctest::Approx(0.0).epsilon(0.01));
   CHECK(lanelets[0].right_heights.back() == doctest::Approx(8.0).epsilon(0.01));
   CHECK(lanelets[1].right_heights.back() == doctest::Approx(11.2).epsilon(0.01));
+
+  auto const ramp = cambium::parse_opendrive(
+                        "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road name=\"\" length=\"300\" id=\"1\" "
+                        "junction=\"-1\"><planView><geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"80\"><arc "
+                        "curvature=\"0.15625\"/></geometry><geometry s=\"80\" x=\"-0.424460\" y=\"0.014091\" "
+                        "hdg=\"12.5\" length=\"220\"><line/></geometry></planView><lanes><laneSection s=\"0\"><center>"
+                        "<lane id=\"0\" type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\"><width "
+                        "sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/><speed sOffset=\"0\" max=\"10\"/><speed "
+                        "sOffset=\"20\" max=\"20\"/><speed sOffset=\"60\" max=\"10\"/><speed sOffset=\"150\" "
+                        "max=\"20\"/></lane></right></laneSection></lanes></road></OpenDRIVE>")
+                        .map;
+  auto const parts = cambium::map::lanelets_of(*ramp, 1);
+  REQUIRE(parts.size() == 4);
+  double const wider = 1.0 + 3.5 * 0.15625;
+  double const lengths[] = {20.0 * wider, 40.0 * wider, 20.0 * wider + 70.0, 150.0};
+  for (std::size_t k = 0; k < 4; ++k) CHECK(length(parts[k].right) == doctest::Approx(lengths[k]).epsilon(0.01));
 }
 
 TEST_CASE("bounds that cross are left out, and a path that leaves its bounds is a finding") {
@@ -551,7 +597,7 @@ TEST_CASE("what a Lanelet2 file says twice, wrongly or in vain is a finding") {
                 "members in the role \"centerline\" of lanelets are not read"},
            Case{"role='yield' ref='21'/>", "role='yield' ref='21'/><member type='way' role='cancel_line' ref='15'/>",
                 "members in the role \"cancel_line\" of rules are not read"},
-           Case{end, "<node id='99'/></osm>", "node 99 has no place, and no lanelet needs it"},
+           Case{end, "<node id='99'/></osm>", "node 99 has no place; it was left out, for no bound needs it"},
            Case{limit, limit + "<tag k='no_drivable_lane' v='yes'/>", "no_drivable_lane=yes is not read"},
            Case{limit, limit + "<tag k='speed_limit:vehicle:bus' v='30'/>", "speed_limit:vehicle:bus=30 is not read"},
            Case{"v='dashed'/>", "v='dashed'/><tag k='lane_change' v='YES'/>", "lane_change=YES is neither"},
@@ -750,6 +796,24 @@ TEST_CASE("what all lanelets say wrongly is one finding, and limits that are non
   fast.speed_limit = 250.0;
   CHECK(text_of(build_lanelet_map({fast}).diagnostics).find("its limit of 250 m/s is not between 0.1 and 200") !=
         std::string::npos);
+}
+
+TEST_CASE("a stop line without a place of the bounds' kind does not move the map") {
+  std::string const way = "<way id='77'><nd ref='75'/><nd ref='76'/></way>\n";
+  for (std::string const place : {"lat='0' lon='0'", "lat='48' lon='11'", ""}) {
+    CAPTURE(place);
+    Osm osm;
+    osm.lanelet(1, {0, 0}, {50, 0}, "<member type='relation' role='regulatory_element' ref='30'/>");
+    osm.nodes += "<node id='75' " + place + "/><node id='76' " + place + "/>";
+    osm.others += way;
+    osm.rule(30, "traffic_light", member("ref_line", 77));
+    auto const made = osm.map();
+    CHECK(lane_of(made, 1).length() == doctest::Approx(50.0).epsilon(1e-6));
+    REQUIRE(lane_of(made, 1).signals.size() == 1);
+    CHECK(lane_of(made, 1).signals[0].s == doctest::Approx(50.0));
+    CHECK(text_of(made.diagnostics).find("way 77 names node 75, which is not there, or has no local place") !=
+          std::string::npos);
+  }
 }
 
 TEST_CASE("walkways go both ways unless they say otherwise") {

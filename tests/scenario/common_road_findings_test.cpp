@@ -277,6 +277,7 @@ TEST_CASE("values that cannot be meant, links given once and ids given twice are
       "initialState><goalState>"
       "<time><intervalStart>10</intervalStart><intervalEnd>20</intervalEnd></time></goalState></planningProblem>";
   CHECK(has(read(lanelet(1, 0) + problem + problem), "planning problem 60 is there already"));
+  CHECK(has(read(sign("250")), "its limit 250 m/s is not between 0.1 and 200"));
   CHECK(has(read(sign("500")), "its limit 500 m/s is not between 0.1 and 200"));
   for (std::string const word : {"-4", "abc"})
     CHECK(has(read(lanelet(1, 0, "<speedLimit>" + word + "</speedLimit>")), "\"" + word + "\" is no speed"));

@@ -576,6 +576,23 @@ TEST_CASE("a vehicle that heads against its lane gets a way of its own, and one 
   CHECK(recorded.diagnostics[0].sentence.find("it got a way of its own") != std::string::npos);
   auto world = recorded.make_world();
   CHECK(world.size() > 0);
+  traffic.tracks.resize(1);
+  auto& states = traffic.tracks[0].states;
+  for (int k = 1; k < 100; ++k) {  // and stands there for long
+    states.push_back(states.back());
+    states.back().time += 0.2;
+    states.back().speed = 0.0;
+  }
+  CHECK_FALSE(way_of(*traffic.map, traffic.tracks[0], 0.0, 100.0)->route);
+  auto turned = cars();  // a car that drives, and stands with a wrong heading
+  turned.tracks.resize(1);
+  for (int k = 1; k < 100; ++k) {
+    turned.tracks[0].states.push_back(turned.tracks[0].states.back());
+    turned.tracks[0].states.back().time += 0.2;
+    turned.tracks[0].states.back().speed = 0.0;
+    turned.tracks[0].states.back().heading = 2.0;
+  }
+  CHECK(way_of(*turned.map, turned.tracks[0], 0.0, 100.0)->route);
   traffic.tracks[0].states.back().x += 20'000.0;
   traffic.tracks[0].states.back().y += 20'000.0;
   CHECK(support::error_of([&] {

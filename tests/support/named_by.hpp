@@ -19,7 +19,8 @@ inline std::set<std::pair<std::string, std::string>> named_by(std::vector<cambiu
     std::vector<std::string> found;
     std::istringstream words(text);
     for (std::string before, word; words >> word; before = word)
-      if (kinds.contains(before)) found.push_back(word.substr(0, word.find_first_not_of("0123456789")));
+      if (auto const id = word.substr(0, word.find_first_not_of("0123456789")); kinds.contains(before) && !id.empty())
+        found.push_back(id);
     return found;
   };
   std::set<std::pair<std::string, std::string>> pairs;

@@ -200,7 +200,10 @@ class JsonReader {
     auto const& element = type.element();
     auto* const held = const_cast<void*>(type.held(object));
     auto const* const blank = usual_inner(type, usual);
-    if (was_empty) element.assign(held, blank);
+    if (was_empty) {
+      take_room(bytes_in(element, blank));
+      element.assign(held, blank);
+    }
     read(path, info, element, held, blank, json);
   }
 
@@ -221,6 +224,7 @@ class JsonReader {
     auto const& model = type.alternatives[chosen]();
     auto const* const blank = type.index(usual) == chosen ? type.held(usual) : model.usual();
     if (type.index(object) != chosen) {
+      take_room(bytes_in(model, blank));
       type.select(object, chosen);
       model.assign(const_cast<void*>(type.held(object)), blank);
     }

@@ -30,7 +30,7 @@ class LaneMatcher {
  public:
   explicit LaneMatcher(Map const& map) : map_(map) {}
 
-  /// Takes the next state; whether it is on a lane that runs its way.
+  /// Takes the next state; whether it is on a lane that runs its way. Of one at rest the heading says nothing.
   bool add(State const& state) {
     constexpr double aside = 2.0;  // [m] from the lane
     geometry::Pose const pose{state.x, state.y, state.heading};
@@ -38,8 +38,8 @@ class LaneMatcher {
     if (!hit) return false;
     double const along = map_.lane(hit->lane).path.pose(hit->s).heading;
     constexpr double moves = 0.5;  // [m/s]
-    if (state.speed > moves && std::abs(geometry::angle_difference(state.heading, along)) > 0.5 * geometry::pi)
-      return false;
+    if (std::abs(geometry::angle_difference(state.heading, along)) > 0.5 * geometry::pi)
+      return std::abs(state.speed) < moves && last_.has_value();
     last_ = hit;
     if (lanes_.empty() || lanes_.back() != hit->lane) lanes_.push_back(hit->lane);
     return true;

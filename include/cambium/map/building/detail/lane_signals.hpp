@@ -183,7 +183,12 @@ class LaneSignals {
   /// at their place.
   [[nodiscard]] LightId light_of(Signal const& signal, SignalSense const& sense) {
     auto const controller = controllers_.find(signal.id);
-    auto name = controller == controllers_.end() ? "signal " + signal.id : controller->second;
+    bool const is_shared = shared_ids_.contains(signal.id);
+    auto name = controller != controllers_.end() ? controller->second
+                : is_shared ? "signal " + signal.id + " of road " + document_.roads[roads_.at(&signal)].id
+                            : "signal " + signal.id;
+    if (is_shared && controller != controllers_.end())
+      count("controls of an id of several signals mean all of them", signal);
     if (controller == controllers_.end() && sense.meaning == SignalMeaning::bulb)
       name = name_of_bulb(signal, sense.arrow, name);
     auto const [known, is_new] = ids_.emplace(name, static_cast<LightId>(lights_.size()));

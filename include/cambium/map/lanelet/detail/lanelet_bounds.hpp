@@ -77,12 +77,20 @@ struct Rail {
   return evened(bound).size() < 2 ? "a bound has fewer than two points that are a centimetre apart" : nullptr;
 }
 
-/// Whether bounds run opposite ways: each begins nearer to the other's end, by more than `least` together [m].
-[[nodiscard]] inline bool run_opposite_ways(std::span<Point const> left, std::span<Point const> right,
-                                            double least = 0.0) {
-  auto const apart = [](Point const& p, Point const& q) { return (p - q).norm(); };
-  return apart(left.front(), right.front()) + apart(left.back(), right.back()) >
-         apart(left.front(), right.back()) + apart(left.back(), right.front()) + least;
+/// Whether bounds run opposite ways: places at the same shares of their lengths lie farther apart than those at
+/// opposite shares. False where one of them cannot be used.
+[[nodiscard]] inline bool run_opposite_ways(std::span<Point const> left, std::span<Point const> right) {
+  if (fault_of_bound(left) != nullptr || fault_of_bound(right) != nullptr) return false;
+  constexpr int places = 16;
+  Rail const a(evened(left)), b(evened(right));
+  double same = 0.0, opposite = 0.0;  // sums of distances [m]
+  for (int k = 0; k <= places; ++k) {
+    double const u = static_cast<double>(k) / places;
+    Point const p = a.at(u);
+    same += (p - b.at(u)).norm();
+    opposite += (p - b.at(1.0 - u)).norm();
+  }
+  return same > opposite;
 }
 
 /// Why bounds cannot be used; null where they can. Of bounds that run opposite ways, that one is turned which then lies
@@ -90,11 +98,7 @@ struct Rail {
 [[nodiscard]] inline char const* fault_of_bounds(Lanelet& lanelet, bool& swapped, bool& turned) {
   for (auto const* bound : {&lanelet.left, &lanelet.right})
     if (auto const* const fault = fault_of_bound(*bound)) return fault;
-  // The ends of a ring, or of a turn right round, lie so close together that they say nothing.
-  double const chord = std::min((lanelet.left.front() - lanelet.left.back()).norm(),
-                                (lanelet.right.front() - lanelet.right.back()).norm());
-  constexpr double shortest = 1.0;  // [m]
-  turned = chord > shortest && run_opposite_ways(lanelet.left, lanelet.right, 0.5 * chord);
+  turned = run_opposite_ways(lanelet.left, lanelet.right);
   if (turned) {
     std::reverse(lanelet.left.begin(), lanelet.left.end());
     bool const left_lies_right = twice_area_between(lanelet.left, lanelet.right) > 0.0;
@@ -208,15 +212,15 @@ struct LaneletCenter {
   return nearest;
 }
 
-/// Whether `p` lies within the ring, which may touch or cross itself: by the crossings of a ray.
+/// Whether the ring, which may touch or cross itself, runs round `p`: by its winding number.
 [[nodiscard]] inline bool is_within(std::span<Point const> ring, Point const& p) {
-  bool inside = false;
+  int turns = 0;
   for (std::size_t i = 0, k = ring.size() - 1; i < ring.size(); k = i++) {
-    auto const &a = ring[i], &b = ring[k];
-    if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      inside = !inside;
+    auto const &b = ring[i], &a = ring[k];
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    if (p.x() < a.x() + (p.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x())) turns += b.y() > a.y() ? 1 : -1;
   }
-  return inside;
+  return turns != 0;
 }
 
 /// Whether the bounds cross and lie on each other's sides by more than 0.1 m. Those that end aslant may face each

@@ -31,8 +31,7 @@ class LanesAsLanelets {
   [[nodiscard]] std::vector<Lanelet> make() const {
     std::vector<Lanelet> result;
     for (auto const& lane : map_.lanes())
-      if (is_kept(lane.id))
-        for (std::size_t k = 0; k + 1 < ends_of(lane).size(); ++k) result.push_back(part_of(lane, k));
+      if (is_kept(lane.id)) add_parts(lane, result);
     return result;
   }
 
@@ -95,16 +94,27 @@ class LanesAsLanelets {
   }
   [[nodiscard]] std::int64_t last_id_of(LaneId lane) const { return id_of(lane, ends_of(map_.lane(lane)).size() - 2); }
 
-  [[nodiscard]] Lanelet part_of(Lane const& lane, std::size_t k) const {
+  void add_parts(Lane const& lane, std::vector<Lanelet>& lanelets) const {
+    auto const& ends = ends_of(lane);
+    auto const left = border_ends(lane, true, ends), right = border_ends(lane, false, ends);
+    for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+      auto lanelet = links_of(lane, k);
+      bool const is_whole = ends.size() == 2;
+      lanelet.left = is_whole ? lane.left.points() : part_of(lane.left, left[k], left[k + 1]);
+      lanelet.right = is_whole ? lane.right.points() : part_of(lane.right, right[k], right[k + 1]);
+      if (has_heights_) {
+        lanelet.left_heights = heights(lane, lanelet.left, ends[k]);
+        lanelet.right_heights = heights(lane, lanelet.right, ends[k]);
+      }
+      lanelets.push_back(std::move(lanelet));
+    }
+  }
+
+  /// A part of a lane without its bounds.
+  [[nodiscard]] Lanelet links_of(Lane const& lane, std::size_t k) const {
     auto const& ends = ends_of(lane);
     auto const parts = ends.size() - 1;
     Lanelet lanelet{.id = id_of(lane.id, k)};
-    lanelet.left = border(lane, true, ends, k);
-    lanelet.right = border(lane, false, ends, k);
-    if (has_heights_) {
-      lanelet.left_heights = heights(lane, lanelet.left, ends[k], ends[k + 1]);
-      lanelet.right_heights = heights(lane, lanelet.right, ends[k], ends[k + 1]);
-    }
     if (k + 1 < parts) lanelet.successors.push_back(id_of(lane.id, k + 1));
     if (k > 0) lanelet.predecessors.push_back(id_of(lane.id, k - 1));
     if (k + 1 == parts)
@@ -146,34 +156,44 @@ class LanesAsLanelets {
                               lanelet.goes_before.end());
   }
 
-  /// The heights of points along the path from `from` to `to` [m], which may lie over itself: looked for near their
-  /// shares of the way.
-  [[nodiscard]] std::vector<double> heights(Lane const& lane, std::vector<geometry::Point> const& points, double from,
-                                            double to) const {
-    std::vector<double> way{0.0}, result;
-    for (std::size_t i = 1; i < points.size(); ++i) way.push_back(way.back() + (points[i] - points[i - 1]).norm());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      double const near = from + (to - from) * way[i] / way.back();
-      double const s = lane.path.project(points[i], lane.path.find(near)).s;
-      result.push_back(map_.road(lane.road).elevation.value(lane.station_at(s)));
+  /// The heights of points along the path from `from` [m] on, which may lie over itself.
+  [[nodiscard]] std::vector<double> heights(Lane const& lane, std::vector<geometry::Point> const& points,
+                                            double from) const {
+    std::vector<double> result;
+    auto near = lane.path.find(from);
+    for (auto const& p : points) {
+      auto const foot = lane.path.project(p, near);
+      near = foot.segment;
+      result.push_back(map_.road(lane.road).elevation.value(lane.station_at(foot.s)));
     }
     return result;
   }
 
-  /// A lane's border along its part `k`.
-  [[nodiscard]] static std::vector<geometry::Point> border(Lane const& lane, bool left, std::vector<double> const& ends,
-                                                           std::size_t k) {
+  /// Where on a border, which may lie over itself, a lane's parts begin and end [m].
+  [[nodiscard]] static std::vector<double> border_ends(Lane const& lane, bool left, std::vector<double> const& ends) {
     auto const& line = left ? lane.left : lane.right;
-    if (ends.size() == 2) return line.points();
-    auto const beside = [&](double s) {
-      auto const pose = lane.path.pose(s);
-      auto const along = geometry::sin_cos(pose.heading);
-      auto const widths = lane.widths_at(s);
-      double const aside = left ? widths.left : -widths.right;
-      auto const near = line.find(line.length() * s / lane.length());  // the border may lie over itself
-      return line.project({pose.x - aside * along.sin, pose.y + aside * along.cos}, near).s;
-    };
-    double const from = k == 0 ? 0.0 : beside(ends[k]), to = k + 2 == ends.size() ? line.length() : beside(ends[k + 1]);
+    std::vector<double> found{0.0};
+    std::uint32_t near = 0;
+    double s = 0.0;
+    for (std::size_t k = 1; k + 1 < ends.size(); ++k) {
+      constexpr double step = 2.0;  // [m]
+      while (s < ends[k]) {
+        s = std::min(s + step, ends[k]);
+        auto const pose = lane.path.pose(s);
+        auto const along = geometry::sin_cos(pose.heading);
+        auto const widths = lane.widths_at(s);
+        double const aside = left ? widths.left : -widths.right;
+        auto const foot = line.project({pose.x - aside * along.sin, pose.y + aside * along.cos}, near);
+        near = foot.segment;
+        if (s == ends[k]) found.push_back(foot.s);
+      }
+    }
+    found.push_back(line.length());
+    return found;
+  }
+
+  /// The points of a line from `from` to `to` [m].
+  [[nodiscard]] static std::vector<geometry::Point> part_of(geometry::Line const& line, double from, double to) {
     constexpr double apart = 0.01;  // [m]
     std::vector<geometry::Point> points{line.pose(from).position()};
     auto const segments = line.segments();

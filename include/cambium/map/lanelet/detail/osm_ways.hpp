@@ -156,13 +156,13 @@ class OsmWays {
     context_.report(Severity::warning, node, std::move(sentence));
   }
 
-  /// The nodes of bounds and stop lines: others do not say where a map lies.
+  /// The nodes of bounds: others do not say where a map lies.
   [[nodiscard]] static std::set<Id> nodes_of_lanelets(pugi::xml_node root) {
     std::set<Id> ways, nodes;
     for_each_child(root, "relation", [&](pugi::xml_node relation) {
       for_each_child(relation, "member", [&](pugi::xml_node member) {
         std::string_view const role = member.attribute("role").value();
-        if (role != "left" && role != "right" && role != "ref_line") return;
+        if (role != "left" && role != "right") return;
         if (auto const id = parse_number<Id>(member.attribute("ref").value())) ways.insert(*id);
       });
     });
@@ -195,7 +195,7 @@ class OsmWays {
       bool const is_placed = latitude && longitude && std::abs(*latitude) <= 84.0 && std::abs(*longitude) <= 180.0;
       bool const counts = used.empty() || used.contains(*id);
       if (!is_placed && !(x && y) && !counts)
-        return warn(node, "node " + std::to_string(*id) + " has no place, and no lanelet needs it; it was left out");
+        return warn(node, "node " + std::to_string(*id) + " has no place; it was left out, for no bound needs it");
       if (!is_placed && !(x && y))
         throw MapError(at(node),
                        "node " + std::to_string(*id) +
@@ -277,7 +277,7 @@ class OsmWays {
         way.nodes.push_back(*ref);
       else if (ref)
         warn(child, "way " + std::to_string(*id) + " names node " + std::to_string(*ref) +
-                        ", which is not there; it was left out");
+                        ", which is not there, or has no local place as the bounds have; it was left out");
     });
     if (!ways_.emplace(*id, std::move(way)).second)
       warn(node, "way " + std::to_string(*id) + " is there already; the second one was left out");
