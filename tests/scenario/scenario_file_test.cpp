@@ -1,6 +1,7 @@
 #include <cambium/cambium.hpp>
 #include <cambium/core/read_file.hpp>
 #include <cambium/core/write_file.hpp>
+#include <cambium/map/opendrive.hpp>
 #include <cambium/map/road/curve_layout.hpp>
 #include <cambium/scenario/highway_site.hpp>
 #include <cambium/scenario/junction_site.hpp>
