@@ -152,11 +152,14 @@ TEST_CASE("lights of one id on two roads are two lights") {
       two{.id = "2", .geometry = "x=\"0\" y=\"50\" hdg=\"0\" length=\"100\"><line/>", .signals = one.signals};
   auto const made = load(one.text() + two.text());
   CHECK(made.map->lights().size() == 2);
-  CHECK(lights(made, "1") == Names{"signal 0 of road 1"});
-  CHECK(lights(made, "2") == Names{"signal 0 of road 2"});
+  CHECK(lights(made, "1") == Names{"signal 0 of road 1 at 90 m"});
+  CHECK(lights(made, "2") == Names{"signal 0 of road 2 at 90 m"});
+  one.signals = signal("0", 30, "1000001", "-1") + signal("0", 90, "1000001", "-1");
+  CHECK(load(one.text()).map->lights().size() == 2);
+  one.signals = two.signals;
   auto const controlled = load(one.text() + two.text() + "<controller id=\"7\"><control signalId=\"0\"/></controller>");
   CHECK(controlled.map->lights().size() == 1);
-  CHECK(count(controlled, "controls of an id of several signals mean all of them") == 1);
+  CHECK(count(controlled, "controls of an id of several signals mean all of them (2 of them)") == 1);
 }
 
 TEST_CASE("codes are found in the spellings of files") {

@@ -299,6 +299,23 @@ TEST_CASE("short lanelets and rings with a reversed bound are turned") {
   CHECK(lane_of(made, 1).length() == doctest::Approx(6.2 * 19.75).epsilon(0.01));
 }
 
+TEST_CASE("a tight turn with slanted ends is not turned, and reversed it is") {
+  Lanelet tight{.id = 1};
+  tight.right.emplace_back(-2.0, -5.3);
+  for (int k = 0; k <= 16; ++k) {
+    double const angle = 3.14159265 * (k / 16.0 - 0.5);
+    tight.left.emplace_back(0.3 * std::cos(angle), 0.3 * std::sin(angle));
+    tight.right.emplace_back(5.3 * std::cos(angle), 5.3 * std::sin(angle));
+  }
+  tight.left.emplace_back(-2.0, 0.3);
+  auto turned = tight;
+  std::reverse(turned.left.begin(), turned.left.end());
+  double const length = lane_of(build_lanelet_map({tight}), 1).length();
+  CHECK(text_of(build_lanelet_map({tight}).diagnostics).find("opposite ways") == std::string::npos);
+  CHECK(text_of(build_lanelet_map({turned}).diagnostics).find("opposite ways") != std::string::npos);
+  CHECK(lane_of(build_lanelet_map({turned}), 1).length() == doctest::Approx(length));
+}
+
 TEST_CASE("a lane over itself lies within its bounds") {
   Lanelet loops{.id = 1};
   for (int k = 0; k <= 90; ++k) {
@@ -368,6 +385,26 @@ TEST_CASE("a lane over itself is cut where its limit changes, on the right turn 
   double const wider = 1.0 + 3.5 * 0.15625;
   double const lengths[] = {20.0 * wider, 40.0 * wider, 20.0 * wider + 70.0, 150.0};
   for (std::size_t k = 0; k < 4; ++k) CHECK(length(parts[k].right) == doctest::Approx(lengths[k]).epsilon(0.01));
+
+  // The right border folds: the lane is wider than the bend's radius.
+  auto const bend =
+      cambium::parse_opendrive(
+          "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road name=\"\" length=\"74.712389\" id=\"1\" "
+          "junction=\"-1\"><planView><geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"20\"><line/>"
+          "</geometry><geometry s=\"20\" x=\"20\" y=\"0\" hdg=\"0\" length=\"4.712389\"><arc "
+          "curvature=\"-0.33333333333\"/></geometry><geometry s=\"24.712389\" x=\"23\" y=\"-3\" "
+          "hdg=\"-1.5707963268\" length=\"50\"><line/></geometry></planView><elevationProfile><elevation "
+          "s=\"0\" a=\"0\" b=\"0.08\" c=\"0\" d=\"0\"/></elevationProfile><lanes><laneSection s=\"0\">"
+          "<center><lane id=\"0\" type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\"><width "
+          "sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/><speed sOffset=\"0\" max=\"10\"/><speed "
+          "sOffset=\"30\" max=\"20\"/></lane></right></laneSection></lanes></road></OpenDRIVE>")
+          .map;
+  auto const legs = cambium::map::lanelets_of(*bend, 1);
+  REQUIRE(legs.size() == 2);
+  CHECK(length(legs[1].right) == doctest::Approx(44.7).epsilon(0.02));
+  CHECK(length(legs[1].left) == doctest::Approx(44.7).epsilon(0.02));
+  CHECK(legs[1].right_heights.back() == doctest::Approx(0.08 * 74.7).epsilon(0.01));
+  CHECK(legs[0].right_heights.back() == doctest::Approx(0.08 * 30.0).epsilon(0.02));
 }
 
 TEST_CASE("bounds that cross are left out, and a path that leaves its bounds is a finding") {
@@ -811,8 +848,10 @@ TEST_CASE("a stop line without a place of the bounds' kind does not move the map
     CHECK(lane_of(made, 1).length() == doctest::Approx(50.0).epsilon(1e-6));
     REQUIRE(lane_of(made, 1).signals.size() == 1);
     CHECK(lane_of(made, 1).signals[0].s == doctest::Approx(50.0));
-    CHECK(text_of(made.diagnostics).find("way 77 names node 75, which is not there, or has no local place") !=
-          std::string::npos);
+    CHECK(
+        text_of(made.diagnostics)
+            .find("way 77 names node 75, which is not there, or has no place of the kind that bounds have (local_x") !=
+        std::string::npos);
   }
 }
 

@@ -593,6 +593,19 @@ TEST_CASE("a vehicle that heads against its lane gets a way of its own, and one 
     turned.tracks[0].states.back().heading = 2.0;
   }
   CHECK(way_of(*turned.map, turned.tracks[0], 0.0, 100.0)->route);
+  auto waiting = cars();  // one that stands so before it drives
+  auto& moving = waiting.tracks[0].states;
+  for (auto& state : moving) state.time += 20.0;
+  for (int k = 0; k < 100; ++k) {
+    auto state = moving.front();
+    state.time = moving.front().time - 0.2;
+    state.speed = 0.0;
+    state.heading = 2.0;
+    moving.insert(moving.begin(), state);
+  }
+  auto const way = way_of(*waiting.map, waiting.tracks[0], 0.0, 100.0);
+  CHECK(way->route);
+  CHECK(way->states.size() == moving.size());
   traffic.tracks[0].states.back().x += 20'000.0;
   traffic.tracks[0].states.back().y += 20'000.0;
   CHECK(support::error_of([&] {

@@ -30,16 +30,14 @@ class LaneMatcher {
  public:
   explicit LaneMatcher(Map const& map) : map_(map) {}
 
-  /// Takes the next state; whether it is on a lane that runs its way. Of one at rest the heading says nothing.
+  /// Takes the next state; whether it is on a lane that runs its way.
   bool add(State const& state) {
     constexpr double aside = 2.0;  // [m] from the lane
     geometry::Pose const pose{state.x, state.y, state.heading};
     auto const hit = last_ ? map_.nearest_lane(pose, *last_, aside) : map_.nearest_lane(pose, aside);
     if (!hit) return false;
     double const along = map_.lane(hit->lane).path.pose(hit->s).heading;
-    constexpr double moves = 0.5;  // [m/s]
-    if (std::abs(geometry::angle_difference(state.heading, along)) > 0.5 * geometry::pi)
-      return std::abs(state.speed) < moves && last_.has_value();
+    if (std::abs(geometry::angle_difference(state.heading, along)) > 0.5 * geometry::pi) return false;
     last_ = hit;
     if (lanes_.empty() || lanes_.back() != hit->lane) lanes_.push_back(hit->lane);
     return true;
@@ -118,6 +116,21 @@ class LaneMatcher {
   for (auto const& state : track.states)
     if (state.time > from && state.time < to) states.push_back(reference_state(state, shape));
   states.push_back(reference_state(track.at(to), shape));
+  return states;
+}
+
+/// The states with the headings of the motion before or, at the begin, behind them where they are at rest: those of a
+/// table may be anything then. As they are where the track never moves.
+[[nodiscard]] inline std::vector<State> headed_by_motion(std::vector<State> states) {
+  auto const moves = [](State const& state) { return std::abs(state.speed) > 0.5; };  // [m/s]
+  auto const first = std::find_if(states.begin(), states.end(), moves);
+  if (first == states.end()) return states;
+  double heading = first->heading;
+  for (auto& state : states)
+    if (moves(state))
+      heading = state.heading;
+    else
+      state.heading = heading;
   return states;
 }
 
@@ -225,8 +238,9 @@ CAMBIUM_COLD std::optional<TrackWay> way_of(Map const& map, Track const& track, 
   if (track.type != TrackType::pedestrian) {
     detail::LaneMatcher matcher(map);
     std::size_t first = way.states.size(), last = 0, on_lanes = 0;
+    auto const headed = detail::headed_by_motion(way.states);
     for (std::size_t i = 0; i < way.states.size(); ++i) {
-      if (!matcher.add(way.states[i])) continue;
+      if (!matcher.add(headed[i])) continue;
       first = std::min(first, i);
       last = i;
       ++on_lanes;

@@ -85,6 +85,8 @@ class LaneSignals {
       if (&signal == &place) count_unused(signal, sense);
       return;
     }
+    if (&signal == &place && shared_ids_.contains(signal.id) && controllers_.contains(signal.id))
+      count("controls of an id of several signals mean all of them", signal);
     auto& is_given = given_[&signal];
     bool const is_place_only =
         !place.validities.empty() && std::all_of(place.validities.begin(), place.validities.end(),
@@ -183,17 +185,20 @@ class LaneSignals {
   /// at their place.
   [[nodiscard]] LightId light_of(Signal const& signal, SignalSense const& sense) {
     auto const controller = controllers_.find(signal.id);
-    bool const is_shared = shared_ids_.contains(signal.id);
-    auto name = controller != controllers_.end() ? controller->second
-                : is_shared ? "signal " + signal.id + " of road " + document_.roads[roads_.at(&signal)].id
-                            : "signal " + signal.id;
-    if (is_shared && controller != controllers_.end())
-      count("controls of an id of several signals mean all of them", signal);
+    auto name = controller != controllers_.end() ? controller->second : name_of(signal);
     if (controller == controllers_.end() && sense.meaning == SignalMeaning::bulb)
       name = name_of_bulb(signal, sense.arrow, name);
     auto const [known, is_new] = ids_.emplace(name, static_cast<LightId>(lights_.size()));
     if (is_new) lights_.push_back({known->second, name});
     return known->second;
+  }
+
+  /// The name of a light without a controller; with its place, where several signals have its id.
+  [[nodiscard]] std::string name_of(Signal const& signal) const {
+    auto const name = "signal " + signal.id;
+    if (!shared_ids_.contains(signal.id)) return name;
+    return name + " of road " + document_.roads[roads_.at(&signal)].id + " at " +
+           cambium::detail::rounded_text(signal.s) + " m";
   }
 
   [[nodiscard]] std::string name_of_bulb(Signal const& signal, Arrow arrow, std::string const& name) {

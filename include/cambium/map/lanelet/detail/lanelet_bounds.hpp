@@ -77,20 +77,42 @@ struct Rail {
   return evened(bound).size() < 2 ? "a bound has fewer than two points that are a centimetre apart" : nullptr;
 }
 
+/// Whether two segments cross away from their ends.
+[[nodiscard]] inline bool segments_cross(Point const& a, Point const& b, Point const& c, Point const& d) {
+  using geometry::turn;
+  return turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
+}
+
+/// Whether a segment crosses a line away from their ends.
+[[nodiscard]] inline bool crosses(Point const& a, Point const& b, std::span<Point const> line) {
+  for (std::size_t i = 0; i + 1 < line.size(); ++i)
+    if (segments_cross(a, b, line[i], line[i + 1])) return true;
+  return false;
+}
+
 /// Whether bounds run opposite ways: places at the same shares of their lengths lie farther apart than those at
-/// opposite shares. False where one of them cannot be used.
+/// opposite shares. Where that is close, as in tight turns and short lanelets: whether only so the ends, joined by
+/// straight lines, cross neither the bounds nor each other. False where a bound cannot be used.
 [[nodiscard]] inline bool run_opposite_ways(std::span<Point const> left, std::span<Point const> right) {
   if (fault_of_bound(left) != nullptr || fault_of_bound(right) != nullptr) return false;
   constexpr int places = 16;
+  constexpr double clear = 0.8, rounding = 1.0 + 1e-9;  // ratios of sums of distances
   Rail const a(evened(left)), b(evened(right));
-  double same = 0.0, opposite = 0.0;  // sums of distances [m]
+  double same = 0.0, opposite = 0.0;  // [m]
   for (int k = 0; k <= places; ++k) {
     double const u = static_cast<double>(k) / places;
     Point const p = a.at(u);
     same += (p - b.at(u)).norm();
     opposite += (p - b.at(1.0 - u)).norm();
   }
-  return same > opposite;
+  if (same < clear * opposite || opposite < clear * same) return same > opposite;
+  auto const is_open = [&](Point const& right_begin, Point const& right_end) {
+    auto const &begin = left.front(), &end = left.back();
+    return !segments_cross(begin, right_begin, end, right_end) && !crosses(begin, right_begin, left) &&
+           !crosses(begin, right_begin, right) && !crosses(end, right_end, left) && !crosses(end, right_end, right);
+  };
+  bool const as_given = is_open(right.front(), right.back()), reversed = is_open(right.back(), right.front());
+  return as_given != reversed ? reversed : same > rounding * opposite;
 }
 
 /// Why bounds cannot be used; null where they can. Of bounds that run opposite ways, that one is turned which then lies
@@ -237,12 +259,7 @@ struct LaneletCenter {
   if (!any) return false;
   auto const &l = lanelet.left, &r = lanelet.right;
   for (std::size_t i = 0; i + 1 < l.size(); ++i)
-    for (std::size_t k = 0; k + 1 < r.size(); ++k) {
-      auto const side = [](Point const& a, Point const& b, Point const& p) { return geometry::turn(a, b, p); };
-      if (side(l[i], l[i + 1], r[k]) * side(l[i], l[i + 1], r[k + 1]) < 0.0 &&
-          side(r[k], r[k + 1], l[i]) * side(r[k], r[k + 1], l[i + 1]) < 0.0)
-        return true;
-    }
+    if (crosses(l[i], l[i + 1], r)) return true;
   return false;
 }
 

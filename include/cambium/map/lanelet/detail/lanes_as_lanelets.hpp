@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -156,37 +158,52 @@ class LanesAsLanelets {
                               lanelet.goes_before.end());
   }
 
-  /// The heights of points along the path from `from` [m] on, which may lie over itself.
+  /// The place on a line nearest to `p`, from `from` [m] on and at most `reach` [m] farther: a line may lie over
+  /// itself, or fold.
+  [[nodiscard]] static double place_ahead(geometry::Line const& line, geometry::Point const& p, double from,
+                                          double reach) {
+    auto const segments = line.segments();
+    double nearest = std::numeric_limits<double>::infinity(), found = from;
+    for (std::size_t i = line.find(from); i < segments.size() && segments[i].s <= from + reach; ++i) {
+      auto const& g = segments[i];
+      double const along = (p.x() - g.x) * g.ux + (p.y() - g.y) * g.uy;
+      double const s = std::max(from, g.s + std::clamp(along, 0.0, g.length)), way = s - g.s;
+      double const away = std::hypot(p.x() - g.x - way * g.ux, p.y() - g.y - way * g.uy);
+      if (away < nearest) std::tie(nearest, found) = std::pair(away, s);
+    }
+    return found;
+  }
+
+  /// The heights of points along the path from `from` [m] on.
   [[nodiscard]] std::vector<double> heights(Lane const& lane, std::vector<geometry::Point> const& points,
                                             double from) const {
+    constexpr double slack = 15.0;  // [m] a border may have no length beside so much of the path
     std::vector<double> result;
-    auto near = lane.path.find(from);
-    for (auto const& p : points) {
-      auto const foot = lane.path.project(p, near);
-      near = foot.segment;
-      result.push_back(map_.road(lane.road).elevation.value(lane.station_at(foot.s)));
+    double s = from;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      double const way = i == 0 ? 0.0 : (points[i] - points[i - 1]).norm();
+      s = place_ahead(lane.path, points[i], s, 1.5 * way + slack);
+      result.push_back(map_.road(lane.road).elevation.value(lane.station_at(s)));
     }
     return result;
   }
 
-  /// Where on a border, which may lie over itself, a lane's parts begin and end [m].
+  /// Where on a border a lane's parts begin and end [m].
   [[nodiscard]] static std::vector<double> border_ends(Lane const& lane, bool left, std::vector<double> const& ends) {
+    constexpr double step = 2.0, reach = 10.0;  // [m] of the path, and of the border beside it
     auto const& line = left ? lane.left : lane.right;
     std::vector<double> found{0.0};
-    std::uint32_t near = 0;
-    double s = 0.0;
+    double s = 0.0, place = 0.0;
     for (std::size_t k = 1; k + 1 < ends.size(); ++k) {
-      constexpr double step = 2.0;  // [m]
       while (s < ends[k]) {
         s = std::min(s + step, ends[k]);
         auto const pose = lane.path.pose(s);
         auto const along = geometry::sin_cos(pose.heading);
         auto const widths = lane.widths_at(s);
         double const aside = left ? widths.left : -widths.right;
-        auto const foot = line.project({pose.x - aside * along.sin, pose.y + aside * along.cos}, near);
-        near = foot.segment;
-        if (s == ends[k]) found.push_back(foot.s);
+        place = place_ahead(line, {pose.x - aside * along.sin, pose.y + aside * along.cos}, place, reach);
       }
+      found.push_back(place);
     }
     found.push_back(line.length());
     return found;

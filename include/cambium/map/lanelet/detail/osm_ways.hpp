@@ -207,9 +207,10 @@ class OsmWays {
       first = first.value_or(*longitude);
       box.add(*first + std::remainder(*longitude - *first, 360.0), *latitude);
     });
-    if (!local.empty() && is_local) return static_cast<void>(nodes_ = std::move(local));
+    is_local_ = is_local && !local.empty();
+    if (is_local_) return static_cast<void>(nodes_ = std::move(local));
     for (auto const& [id, place] : degrees)
-      if (!place.allFinite())
+      if (!place.allFinite() && (used.empty() || used.contains(id)))
         throw MapError(context_.file(),
                        "node " + std::to_string(id) + " has only a local place, and other nodes have none",
                        "give all nodes local_x and local_y, or all lat and lon");
@@ -229,7 +230,8 @@ class OsmWays {
     auto const origin = given.value_or(first ? middle_of(box) : Lanelet2Origin{});
     if (first) warn_if_far(box, origin);
     UtmProjection const projection(origin.latitude, origin.longitude);
-    for (auto const& [id, place] : degrees) nodes_.emplace(id, projection(place.y(), place.x()));
+    for (auto const& [id, place] : degrees)
+      if (place.allFinite()) nodes_.emplace(id, projection(place.y(), place.x()));
   }
 
   /// The middle of a map [degrees]; (0, 0) for one near there.
@@ -277,7 +279,8 @@ class OsmWays {
         way.nodes.push_back(*ref);
       else if (ref)
         warn(child, "way " + std::to_string(*id) + " names node " + std::to_string(*ref) +
-                        ", which is not there, or has no local place as the bounds have; it was left out");
+                        ", which is not there, or has no place of the kind that bounds have (" +
+                        (is_local_ ? "local_x and local_y" : "lat and lon") + "); it was left out");
     });
     if (!ways_.emplace(*id, std::move(way)).second)
       warn(node, "way " + std::to_string(*id) + " is there already; the second one was left out");
@@ -285,6 +288,7 @@ class OsmWays {
 
   XmlContext& context_;
   CountedFindings& counted_;
+  bool is_local_ = false;  ///< places are those of local_x and local_y
   std::map<Id, Point> nodes_;
   std::map<Id, double> heights_;  ///< of nodes that have one
   std::map<Id, OsmWay> ways_;
