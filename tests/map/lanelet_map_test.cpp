@@ -304,7 +304,7 @@ TEST_CASE("a tight turn with slanted ends is not turned, and reversed it is") {
   tight.right.emplace_back(-2.0, -5.3);
   for (int k = 0; k <= 16; ++k) {
     double const angle = 3.14159265 * (k / 16.0 - 0.5);
-    tight.left.emplace_back(0.3 * std::cos(angle), 0.3 * std::sin(angle));
+    tight.left.emplace_back(k % 16 == 0 ? 0.0 : 0.3 * std::cos(angle), 0.3 * std::sin(angle));  // corners on a gate
     tight.right.emplace_back(5.3 * std::cos(angle), 5.3 * std::sin(angle));
   }
   tight.left.emplace_back(-2.0, 0.3);

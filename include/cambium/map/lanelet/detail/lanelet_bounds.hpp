@@ -83,10 +83,16 @@ struct Rail {
   return turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
 }
 
-/// Whether a segment crosses a line away from their ends.
-[[nodiscard]] inline bool crosses(Point const& a, Point const& b, std::span<Point const> line) {
-  for (std::size_t i = 0; i + 1 < line.size(); ++i)
-    if (segments_cross(a, b, line[i], line[i + 1])) return true;
+/// Whether the segment from `a` to `b` crosses a line away from its own ends; with `corners`, at a corner of the line,
+/// too.
+[[nodiscard]] inline bool crosses(Point const& a, Point const& b, std::span<Point const> line, bool corners = false) {
+  using geometry::turn;
+  for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+    auto const &c = line[i], &d = line[i + 1];
+    if (segments_cross(a, b, c, d)) return true;
+    bool const at_corner = (i > 0 && turn(a, b, c) == 0.0) || (i + 2 < line.size() && turn(a, b, d) == 0.0);
+    if (corners && at_corner && turn(c, d, a) * turn(c, d, b) < 0.0) return true;
+  }
   return false;
 }
 
@@ -108,8 +114,9 @@ struct Rail {
   if (same < clear * opposite || opposite < clear * same) return same > opposite;
   auto const is_open = [&](Point const& right_begin, Point const& right_end) {
     auto const &begin = left.front(), &end = left.back();
-    return !segments_cross(begin, right_begin, end, right_end) && !crosses(begin, right_begin, left) &&
-           !crosses(begin, right_begin, right) && !crosses(end, right_end, left) && !crosses(end, right_end, right);
+    return !segments_cross(begin, right_begin, end, right_end) && !crosses(begin, right_begin, left, true) &&
+           !crosses(begin, right_begin, right, true) && !crosses(end, right_end, left, true) &&
+           !crosses(end, right_end, right, true);
   };
   bool const as_given = is_open(right.front(), right.back()), reversed = is_open(right.back(), right.front());
   return as_given != reversed ? reversed : same > rounding * opposite;
