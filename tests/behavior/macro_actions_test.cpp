@@ -52,6 +52,13 @@ TEST_CASE("actions can be counted and named") {
   auto const two = cb::MacroActions::of({{Kind::stay, -3.0}, {Kind::change_left}});
   CHECK(two.size() == 2);
   CHECK_THROWS_AS((void)cb::MacroActions::of({}), cb::ParameterError);
+  cb::MacroAction const keep;
+  CHECK(cb::MacroActions::of(
+            {keep, keep, keep, keep, keep, keep, keep, keep, keep, keep, keep, keep, keep, keep, keep, keep})
+            .size() == 16);
+  CHECK_THROWS_WITH_AS((void)cb::MacroActions::of({keep, keep, keep, keep, keep, keep, keep, keep, keep, keep, keep,
+                                                   keep, keep, keep, keep, keep, keep}),
+                       doctest::Contains("has 17 actions; give 1 to 16"), cb::ParameterError);
   auto wrong = two;
   wrong.actions[1].acceleration = std::nan("");
   CHECK_THROWS_AS(Highway{wrong}, cb::ParameterError);

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <string>
+#include <utility>
 
 #include "cambium/cambium.hpp"
 #include "cambium/core/distribution.hpp"
@@ -84,6 +85,19 @@ TEST_CASE("a number is set by its key, and nothing else changes") {
   set_parameter(search, "speed.uniform.high", 5.0);
   CHECK(search.speed.highest() == 5.0);
   CHECK(search.speed.lowest() == 1.0);
+}
+
+TEST_CASE("the range of a number is found by its place, in structs within the struct, too") {
+  Mobil const driver;
+  auto const range = [&driver](double const& place) {
+    auto const found = detail::range_at(type_info<Mobil>(), &driver, &place);
+    return std::pair(found.low, found.high);
+  };
+  CHECK(range(driver.politeness) == std::pair(-1.0, 10.0));
+  CHECK(range(driver.idm.desired_speed) == std::pair(0.1, 100.0));
+  CHECK(range(driver.changing.course.duration) != std::pair(any_finite.low, any_finite.high));
+  double const elsewhere = 0.0;
+  CHECK(range(elsewhere) == std::pair(any_finite.low, any_finite.high));
 }
 
 TEST_CASE("a key that names no number, or one out of range, is an error with the nearest key") {

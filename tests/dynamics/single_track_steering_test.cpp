@@ -37,6 +37,18 @@ double error(int steps) {
 
 }  // namespace
 
+TEST_CASE("the derivative of a state is what each quantity gains in a second") {
+  cb::SingleTrackSteering const model;
+  auto const rate = model.derivative(cb::SingleTrackSteering::State{.heading = 0.5, .speed = 10.0, .steering = 0.1},
+                                     {.acceleration = 2.0, .steering_rate = 0.3});
+  CHECK(rate.time == 1.0);
+  CHECK(rate.x == doctest::Approx(10.0 * std::cos(0.5)));
+  CHECK(rate.y == doctest::Approx(10.0 * std::sin(0.5)));
+  CHECK(rate.heading == doctest::Approx(10.0 * std::tan(0.1) / model.wheel_base));
+  CHECK(rate.speed == 2.0);
+  CHECK(rate.steering == 0.3);
+}
+
 TEST_CASE("wheels that turn steadily drive a clothoid") {
   cb::SingleTrackSteering const model;
   cb::SingleTrackSteering::State x{.speed = 12.0};
