@@ -269,6 +269,27 @@ TEST_CASE("parallel trees each keep their own subtree") {
   CHECK(sum == kept);
 }
 
+TEST_CASE("the variation of parallel trees is that of the tree which visited their choice most") {
+  int agree = 0;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    ParallelTreeSearch parallel(TreeSearch<TicTacToe>({}, {.horizon = 9}, {}, {}, {60}), 3);
+    auto const& result = parallel.run({}, seed);
+    std::uint32_t most = 0;
+    std::vector<TicTacToe::Action> expected{result.choice(0).action, result.choice(1).action};
+    for (auto const& search : parallel.searches()) {
+      auto const& own = search.result();
+      bool const agrees =
+          own.choice(0).action == result.choice(0).action && own.choice(1).action == result.choice(1).action;
+      if (!agrees || own.choice(0).visits <= most) continue;
+      most = own.choice(0).visits;
+      expected = own.variation;
+    }
+    agree += most > 0 ? 1 : 0;
+    CHECK(result.variation == expected);
+  }
+  CHECK(agree > 5);
+}
+
 TEST_CASE("a tree reserves no more than its memory limit") {
   for (std::size_t const memory : {std::size_t{1} << 16, std::size_t{1} << 20, std::size_t{5} << 20}) {
     CAPTURE(memory);
@@ -490,6 +511,11 @@ TEST_CASE("actions from a continuum are added gradually") {
   CHECK(result.of(0).size() == 100);
   CHECK(std::abs(result.choice(0).action - 0.3) < 0.05);
   CHECK(result.choice(0).mean_return > 1.8);
+  // Where the memory ends, it goes on with the actions that it has, and says so.
+  TreeSearch<Target> small({}, {.horizon = 2, .discount = 1.0, .memory = 20'000, .action_widening = {20.0, 0.5}}, {0.2},
+                           {}, {10'000});
+  CHECK(small.run({}, 4).is_full);
+  CHECK(small.result().iterations == 10'000);
   // The trees of a parallel search try the same actions at the root.
   ParallelTreeSearch parallel(search, 2);
   auto const& merged = parallel.run({}, 4);

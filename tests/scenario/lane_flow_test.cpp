@@ -210,6 +210,10 @@ TEST_CASE("what a flow cannot do is an error that says where and what to do") {
   };
   CHECK(refusal("highway.xodr", with({"idm.desird_speed", Uniform{20.0, 30.0}})) ==
         "recipe.flows[0].drivers[0].drawn[0]: idm.desird_speed: there is no number of that key; is it desired_speed?");
+  auto second = with({"idm.desired_speed", Uniform{20.0, 30.0}});
+  second[0].drivers[0].drawn.push_back({"politness", Uniform{0.0, 1.0}});
+  CHECK(refusal("highway.xodr", second).find("recipe.flows[0].drivers[0].drawn[1]: politness: there is no number") ==
+        0);
   CHECK(
       refusal("highway.xodr", with({"idm.time_headway", ClippedNormal{1.0, 0.5}})).find("idm.time_headway: is -inf") !=
       std::string::npos);
