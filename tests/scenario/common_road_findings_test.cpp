@@ -61,14 +61,15 @@ std::string light(int id, std::string const& rest) {
 
 std::string ref(int id) { return "<trafficLightRef ref='" + std::to_string(id) + "'/>"; }
 
-/// A lanelet before a junction with one way straight on and one to the left, and lights for each.
+/// A lanelet before a junction with one way straight on and one to the left, and lights for each; far from the origin.
 std::string fork(std::string const& intersection) {
   std::string const curve =
-      "<leftBound><point><x>50</x><y>0</y></point><point><x>55</x><y>1</y></point><point><x>60</x><y>30</y></point>"
-      "</leftBound><rightBound><point><x>50</x><y>-3.5</y></point><point><x>58</x><y>-1</y></point><point><x>64</x>"
-      "<y>30</y></point></rightBound>";
-  return lanelet(1, 0, "<successor ref='2'/><successor ref='3'/>" + ref(61) + ref(62)) +
-         lanelet(2, 0, "<predecessor ref='1'/>", 50.0) + "<lanelet id='3'>" + curve +
+      "<leftBound><point><x>50</x><y>500</y></point><point><x>55</x><y>501</y></point><point><x>60</x><y>530</y></"
+      "point>"
+      "</leftBound><rightBound><point><x>50</x><y>496.5</y></point><point><x>58</x><y>499</y></point><point><x>64</x>"
+      "<y>530</y></point></rightBound>";
+  return lanelet(1, 500, "<successor ref='2'/><successor ref='3'/>" + ref(61) + ref(62)) +
+         lanelet(2, 500, "<predecessor ref='1'/>", 50.0) + "<lanelet id='3'>" + curve +
          "<predecessor ref='1'/></lanelet>" +
          light(61, cycle({{100, "red"}, {100, "green"}}) + "<direction>left</direction>") +
          light(62, cycle({{100, "green"}, {100, "red"}}) + "<direction>straight</direction>") + intersection;
