@@ -297,6 +297,17 @@ TEST_CASE("reasons to keep a cycle that could not be saved are none for the next
   moody.throws = false;
   recorder.run([] {}, moody);
   CHECK(recorder.written() == 0);
+  // A reason between two cycles is kept with the next one, even if an end comes without its begin.
+  moody.throws = true;
+  recorder.begin(moody);
+  recorder.end(moody);
+  recorder.trigger("between");
+  recorder.end(moody);
+  moody.throws = false;
+  recorder.begin(moody);
+  recorder.end(moody);
+  REQUIRE(recorder.written() == 1);
+  CHECK(info_of(recorder.last_file()).note == "between");
 }
 
 TEST_CASE("a log of another thread may trigger") {
