@@ -461,6 +461,32 @@ TEST_CASE("agents on equal ways share a free corridor") {
   refuses("m from its road", [&] { add(90, -18, way); });
 }
 
+TEST_CASE("a long body on a free corridor is in the lane that it reaches into, whatever their direction") {
+  for (double const heading : {0.0, 0.8, 1.6, 2.5, -2.0}) {
+    CAPTURE(heading);
+    auto const map = support::map_of(
+        {.line = cb::map::lay_from({0.0, 0.0, heading}, {{200.0}}), .sections = {{.right = cb::map::equal_lanes(1)}}});
+    auto const at = [&](double along, double aside) {
+      return cb::geometry::Point{along * std::cos(heading) - aside * std::sin(heading),
+                                 along * std::sin(heading) + aside * std::cos(heading)};
+    };
+    for (double const aside : {3.0, -0.5, -6.5}) {  // the lane is at 0 to -3.5 m, the truck 2.5 m wide
+      CAPTURE(aside);
+      Sim world(map);
+      auto const car = world.add({.position = at(20, -1.75), .speed = 1, .behavior = cb::ConstantAcceleration{}});
+      auto const truck = world.add({.position = at(60, aside),
+                                    .heading = heading,
+                                    .speed = 1,
+                                    .shape = cb::geometry::truck(),
+                                    .behavior = cb::ConstantAcceleration{},
+                                    .way = {at(40, aside), at(90, aside)}});
+      auto const next = world.observe(car).ahead();
+      CHECK(next.has_value() == (aside == -0.5));
+      if (next) CHECK(next->agent == truck);
+    }
+  }
+}
+
 TEST_CASE("a state set where the route passes twice is taken for the pass that the agent is on") {
   // A road that crosses its own beginning: out to the east, round to the left, and back over it.
   auto const map = support::map_of({.line = cb::map::lay_from({}, {{100.0}, {235.619449, 0.02, 0.02}, {100.0}}),
