@@ -17,6 +17,7 @@
 #include "cambium/core/text.hpp"
 #include "../support/allocations.hpp"
 #include "../support/described.hpp"
+#include "../support/versions.hpp"
 
 using namespace cambium;
 using namespace support;
@@ -331,6 +332,15 @@ TEST_CASE("a described struct travels as bytes") {
   }
   CHECK(std::signbit(from_binary<Everything>(to_binary(unusual())).pair[1]));
   CHECK_THROWS_AS(static_cast<void>(to_binary(Everything{.way = Secret{}})), ParameterError);
+}
+
+TEST_CASE("structs of older versions are read") {
+  versions::check([](auto const& object) { return to_binary(object); },
+                  []<class T>(std::string const& bytes, T& object) {
+                    T read{};
+                    detail::read_binary(bytes, type_info<T>(), &read, "x");
+                    object = read;
+                  });
 }
 
 TEST_CASE("bytes of another kind, cut short or changed are refused") {

@@ -39,6 +39,12 @@ TEST_CASE("a number is a number as a whole, in decimal digits, in every locale")
   std::setlocale(LC_NUMERIC, kept.c_str());
 }
 
+TEST_CASE("a number ends where its text ends") {
+  std::string_view const digits = "12345 ";
+  CHECK(parse_number<int>(digits.substr(0, 2)) == 12);
+  CHECK(parse_number<double>(digits.substr(1, 3)) == 234.0);
+}
+
 TEST_CASE("a number too small for a double is 0, one too large for its type is an error") {
   CHECK(parse_number<double>("-1e-999") == 0.0);
   CHECK(parse_number<double>("0." + std::string(400, '0') + "1") == 0.0);

@@ -16,16 +16,10 @@
 
 namespace fixtures {
 
+using support::says;
+
 inline constexpr std::array formats{cambium::SnapshotFormat::binary, cambium::SnapshotFormat::text,
                                     cambium::SnapshotFormat::xml};
-
-/// Checks that the error of `run` contains `part`; after a '^', that it begins so.
-void says(std::string const& part, auto const& run) {
-  auto const message = support::error_of(run);
-  CAPTURE(part);
-  CAPTURE(message);
-  CHECK((part.front() == '^' ? message.starts_with(part.substr(1)) : message.find(part) != message.npos));
-}
 
 inline std::filesystem::path const golden_folder = std::filesystem::path(CAMBIUM_SOURCE_DIR) / "tests/snapshot/golden";
 
