@@ -884,7 +884,7 @@ TEST_CASE("of several that claim a neighbour, the one that it names has it") {
   CHECK(text_of(made.diagnostics).find("lanelet 3: its neighbour 1 has another one on that side") != std::string::npos);
 }
 
-TEST_CASE("lanes are cut into lanelets where limits and permitted changes change, and priorities are kept") {
+TEST_CASE("driving lanes are cut into lanelets where limits and permitted changes change, and priorities are kept") {
   std::string const lane_text =
       "<lane id=\"ID\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/>"
       "<roadMark sOffset=\"0\" type=\"broken\" weight=\"standard\" color=\"standard\" width=\"0.1\"/>"
@@ -896,6 +896,7 @@ TEST_CASE("lanes are cut into lanelets where limits and permitted changes change
     auto text = lane_text;
     lanes += text.replace(text.find("ID"), 2, id);
   }
+  lanes += "<lane id=\"-3\" type=\"sidewalk\"><width sOffset=\"0\" a=\"2\" b=\"0\" c=\"0\" d=\"0\"/></lane>";
   auto const map = cambium::parse_opendrive(
                        "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road name=\"\" length=\"100\" id=\"1\" "
                        "junction=\"-1\"><planView><geometry s=\"0\" x=\"0\" y=\"0\" hdg=\"0\" length=\"100\"><line/>"
@@ -909,6 +910,7 @@ TEST_CASE("lanes are cut into lanelets where limits and permitted changes change
   CHECK_MESSAGE(made.diagnostics.empty(), text_of(made.diagnostics));
   for (auto const& lane : map->lanes())
     for (double const s : {15.0, 45.0, 80.0}) {
+      if (!lane.drivable()) continue;
       auto const p = lane.path.pose(s).position();
       auto const copy = made.map->nearest_lane({p.x(), p.y(), 0.0}, 0.5);
       REQUIRE(copy);

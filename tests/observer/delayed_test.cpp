@@ -156,6 +156,8 @@ TEST_CASE("a chain may have a stage without a description; the others are still 
 
 TEST_CASE("agents of one world perceive by observers of their own kinds") {
   using Set = cb::ObserverSet<cb::PerfectObserver, cb::DelayedObserver<2>, cb::OccludedObserver>;
+  static_assert(Set::past_steps == 2);
+  static_assert(cb::ObserverSet<cb::PerfectObserver, cb::OccludedObserver>::past_steps == 0);
   Observed<Set> world(straight_road(1, 1000.0));
   auto const sharp = world.add({.position = {100, -1.75}, .speed = 10});
   auto const late = world.add({.position = {150, -1.75}, .speed = 10, .observer = {cb::DelayedObserver<2>{}}});
