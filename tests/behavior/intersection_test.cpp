@@ -119,6 +119,43 @@ TEST_CASE("braking for a line stops before it, for any step and speed, and not t
   }
 }
 
+TEST_CASE("without signs, only lights that are on for both ways keep drivers from going in the order of arrival") {
+  struct Lights {
+    [[nodiscard]] map::LightColor light(LightId id) const {
+      return id == LightId{0} ? map::LightColor::green : map::LightColor::off;
+    }
+  };
+  map::Conflict conflict;
+  conflict.right_of_way = map::RightOfWay::first;
+  LightId const on{0}, off{1}, without = none<LightId>;
+  for (auto const light : {on, off, without})
+    for (auto const other : {on, off, without}) {
+      conflict.light = light;
+      conflict.other_light = other;
+      CHECK(detail::is_by_arrival(Lights{}, conflict) == (light != on && other != on));
+    }
+}
+
+TEST_CASE("of two drivers about to leave their places in the same step, one leaves first: the nearer, the smaller id") {
+  map::Conflict conflict;
+  conflict.hold = {{{10.0, 10.0}, {10.0, 10.0}}};
+  auto const leaves_first = [&](double way, double other_way, bool is_smaller) {
+    RoadUser const user{.speed = 1.0};
+    detail::ConflictUser const other{user, 10.0 - other_way, {}, false, 10.0};
+    detail::ConflictAsker own;
+    own.s = 10.0 - way;
+    own.speed = 1.0;
+    own.dt = 0.2;
+    own.braking = 3.0;
+    return detail::leaves_first(conflict, other, own, is_smaller);
+  };
+  for (bool const is_smaller : {true, false}) {  // both still stop within 0.17 m, but no longer after the step
+    CHECK(leaves_first(0.3, 0.2, is_smaller));
+    CHECK_FALSE(leaves_first(0.2, 0.3, is_smaller));
+    CHECK(leaves_first(0.2, 0.2, is_smaller) == !is_smaller);
+  }
+}
+
 TEST_CASE("the vehicle from the right goes first, whatever the ids and the distances") {
   Crossing const crossing;
   for (bool const right_first_added : {true, false})

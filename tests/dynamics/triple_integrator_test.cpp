@@ -85,7 +85,8 @@ TEST_CASE("a driver's turn stays within its limit, and depends little on the ste
           cb::TripleIntegrator::State x{.speed = speed};
           while (x.time < 12.0) {
             x = cb::drive(model, x, {x.time < 2.0 - 1e-9 ? 1.0 : braking, steering}, dt);
-            CHECK(std::abs(x.lateral_acceleration) <= model.lateral_acceleration_limit + 1e-9);
+            double const tightest = x.speed * x.speed * std::tan(1.5) / model.wheel_base;
+            CHECK(std::abs(x.lateral_acceleration) <= std::min(model.lateral_acceleration_limit, tightest) + 1e-9);
           }
           lowest = std::min(lowest, x.heading);
           highest = std::max(highest, x.heading);

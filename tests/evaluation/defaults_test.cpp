@@ -103,3 +103,10 @@ moves = exceeds: threshold=0.1
 give_way: G(must_give_way & !in_conflict -> N !in_conflict)
 )"[1]);
 }
+
+TEST_CASE("terms add up: their rewards, the highest of their costs, and whether one of them ends the course") {
+  auto const sum = Judgement{.reward = 1.0, .cost = 0.2} + Judgement{.reward = -3.0, .cost = 0.5, .ends = true};
+  CHECK(sum.reward == -2.0);
+  CHECK(sum.cost == 0.5);
+  CHECK(sum.ends);
+}

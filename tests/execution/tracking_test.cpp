@@ -162,6 +162,27 @@ TEST_CASE("nothing is tracked beyond the plan's end, and nothing without a plan"
   CHECK(is_tracked(plan, 0.1));
 }
 
+TEST_CASE("without delay the controller acts in equal parts of a step, none longer than the period") {
+  std::vector<double> intervals;
+  auto const law = [&](cb::Reference const&, cb::TrackingError const&, cb::State const&, double interval) {
+    intervals.push_back(interval);
+    return cb::Action{};
+  };
+  for (double const begin : {0.0, 7.0}) {
+    intervals.clear();
+    cb::TrackingMemory<cb::State> memory;
+    cb::RandomStream random(1, 1, 1);
+    cb::State const now{.time = begin, .speed = 10.0};
+    auto const plan = to({.time = begin + 0.25, .x = 2.5, .speed = 10.0});
+    (void)cb::track({.period = 0.1}, law, plan, now, cb::SingleTrack{}, begin + 0.25, memory, random);
+    REQUIRE(intervals.size() == 3);
+    for (double const interval : intervals) CHECK(interval == doctest::Approx(0.25 / 3.0));
+  }
+  // A delay is four commands long, if it is not so short that it has no effect.
+  CHECK(cb::Actuation{.delay = 0.0039}.slot() == 0.0);
+  CHECK(cb::Actuation{.delay = 0.0041}.slot() == doctest::Approx(0.0041 / 4.0));
+}
+
 TEST_CASE("commands come into effect after the delay, to the period in which they are given") {
   for (double const delay : {0.0, 0.1, 0.2, 0.4, 0.6}) {
     cb::StanleyExecution execution;

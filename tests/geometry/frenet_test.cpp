@@ -116,6 +116,8 @@ TEST_CASE("a state survives the way into the Frenet frame and back") {
     State const state{1.5, p.x(), p.y(), Uniform{-pi, pi}(stream), Uniform{-5.0, 20.0}(stream)};
     auto const frenet = to_frenet(line, state);
     auto const warm = to_frenet(line, state, hint);
+    auto const local = geometry::to_local(line.pose(s), to_map(line.pose(s), {3.0, -2.0}));
+    REQUIRE((local - Point{3.0, -2.0}).norm() < 1e-9);
     REQUIRE(warm.s == doctest::Approx(frenet.s).epsilon(1e-12));
     if (is_vertex(line, frenet.s)) continue;  // outside a kink the direction is lost
     auto const back = from_frenet(line, frenet, 1.5);

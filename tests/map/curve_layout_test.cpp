@@ -97,6 +97,12 @@ TEST_CASE("a right-angled corner is a spiral, an arc and a spiral, with a line b
   CHECK(connecting_curve({0, 0, 0}, {30, 0, 0}).front().kind == GeometryKind::line);
 }
 
+TEST_CASE("the curve that turns back is nearly a half circle") {
+  auto const line = connecting_curve({0, 0, 0}, {0, 40, geometry::pi});
+  CHECK(length_of(line) == doctest::Approx(20.0 * geometry::pi).epsilon(0.03));
+  CHECK(largest_curvature(line) < 1.4 / 20);
+}
+
 TEST_CASE("a curve through points of a circle is that circle, nearly") {
   std::vector<Point> points;
   for (int i = 0; i <= 40; ++i) points.emplace_back(20 * std::cos(0.05 * i), 20 * std::sin(0.05 * i));

@@ -500,6 +500,8 @@ TEST_CASE("replays end where they were recorded, come and go with their tracks, 
   CHECK(world.size() == 3);
   CHECK(world.roster().objects.size() == 1);
   CHECK(world.status(AgentId{9}) == AgentStatus::not_started);
+  auto const walker = *world.roster().slot_of(AgentId{11});  // 0.6 m wide, on a way of its own
+  CHECK(world.roster().agents[walker].road->corridors.front().width_at(1.0) == doctest::Approx(1.1));
   TrackRecorder recorder(world, 0.25);
   for (int k = 0; k < 36; ++k) {
     REQUIRE(world.step(0.25));

@@ -166,7 +166,7 @@ struct ParametricObserver {
     auto const [sin, cos] = geometry::sin_cos(0.5 * geometry::pi * passed / period);
     Vector z = draw(random.at_step(begin));
     Vector const next = draw(random.at_step(begin + period));
-    for (std::size_t i = 0; i < 4; ++i) z[i] = z[i] * cos + next[i] * sin;
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] = z[i] * cos + next[i] * sin;
     return z;
   }
 };
