@@ -104,6 +104,12 @@ def compare(file, ours, theirs, named=()):
     print(f"{file.name}: {len(theirs)} lanelets; findings explain {excused} differences")
 
 
+def is_for_cars(lanelet):
+    """Whether cambium's drivers use it: not lanes for buses, trains, cyclists or pedestrians alone."""
+    users = {user.value for user in lanelet.user_one_way | lanelet.user_bidirectional}
+    return not users or bool(users & {"vehicle", "car", "truck", "motorcycle"})
+
+
 def compare_commonroad(network, corpus, replay_dataset):
     from commonroad.common.file_reader import CommonRoadFileReader
 
@@ -114,7 +120,7 @@ def compare_commonroad(network, corpus, replay_dataset):
         with tempfile.TemporaryDirectory() as folder:
             written = Path(folder) / "written.xml"
             (ours, named), theirs = rows_of(network, file, written), {}
-            for lanelet in scenario.lanelet_network.lanelets:
+            for lanelet in filter(is_for_cars, scenario.lanelet_network.lanelets):
                 beside = lambda other, same: str(other) if other is not None and same else "-"
                 theirs[str(lanelet.lanelet_id)] = ({str(other) for other in lanelet.successor},
                                                    beside(lanelet.adj_left, lanelet.adj_left_same_direction),

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
-#include "cambium/core/parameters.hpp"
+#include "cambium/map/lanelet/lanelet2_origin.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/map.hpp"
 
@@ -15,21 +15,6 @@
 #endif
 
 namespace cambium::map {
-
-/// Projection of a Lanelet2 file's coordinates to metres: transverse Mercator in the UTM zone of the origin, which
-/// becomes (0, 0), as by Lanelet2's UTM projector. The file does not say which origin it was made with; without one, it
-/// is the middle of the map, but (0, 0) for maps near there, such as INTERACTION's.
-struct Lanelet2Origin {
-  double latitude = 0.0;   ///< [degrees], north positive
-  double longitude = 0.0;  ///< [degrees], east positive
-
-  static constexpr char const* name = "lanelet2_origin";
-  static constexpr auto parameters() {
-    using P = Lanelet2Origin;
-    return parameter_list(parameter("latitude", &P::latitude, "degrees", Range{-84, 84}, "of the map frame's origin"),
-                          parameter("longitude", &P::longitude, "degrees", Range{-180, 180}, "likewise"));
-  }
-};
 
 /// The lanelets of a Lanelet2 file (OSM XML); `file` names it in messages. Nodes have `lat` and `lon`, or tags
 /// `local_x` and `local_y` [m], which count where all nodes have them. A lanelet follows another where it begins at the

@@ -14,6 +14,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/stable_sort.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/opendrive/document.hpp"

@@ -21,7 +21,7 @@
 #include "cambium/geometry/box.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
 #include "cambium/map/lanelet/detail/utm.hpp"
-#include "cambium/map/lanelet/lanelet2.hpp"
+#include "cambium/map/lanelet/lanelet2_origin.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 
 namespace cambium::map::detail {
