@@ -15,7 +15,11 @@
 /// - `RoadRules` holds what all drivers can heed besides road users: limits, bends, signals, lane ends, merges.
 /// - `LaneChanging` carries out lane changes safely; a model such as MOBIL only decides when and to which side.
 ///
+/// `Driver<Law, Lateral, Heeds...>` composes a driver of a law, a part that keeps or changes its lane, and what it heeds;
+/// `UrbanDriver` is one that changes lanes and gives way. The drivers below will become such compositions.
+///
 /// The families, each in a folder:
+/// - driver/, heed/, lateral/: composed drivers, what they heed, and where across the road they drive
 /// - law/: constraints, IDM, braking, road rules, lane ends: the parts that the models share
 /// - following/: drivers that keep their lane (IDM, ACC, stochastic IDM, lane tracking, constant acceleration)
 /// - lane_change/: drivers that change lanes (MOBIL, rule-based, macro actions), and that merge or pass within a lane
@@ -32,6 +36,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/course.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/following/adaptive_cruise_control.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/following/headway_hypotheses.hpp"

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/lateral/lane_option.hpp"
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
@@ -16,13 +17,6 @@
 #include "cambium/core/macros.hpp"
 
 namespace cambium {
-
-/// A neighbouring lane as the target of a change.
-struct LaneOption {
-  map::LanePlace place;
-  bool left = false;                    ///< on the left, otherwise on the right
-  std::optional<RoadUser> front, rear;  ///< the new leader and the new follower
-};
 
 /// A driver that keeps its lane, as seen by the rule that decides on lane changes.
 template <class View>

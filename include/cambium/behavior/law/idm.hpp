@@ -323,8 +323,8 @@ class IdmLaw {
   IdmLaw(P const& p, double speed) : IdmLaw(p, speed, p.desired_speed) {}
 
   template <HasIdmParameters P>
-  IdmLaw(P const& p, double speed, double desired_speed)
-      : terms_(p, desired_speed), speed_(speed), rest_(terms_.free(speed)) {}
+  IdmLaw(P const& p, double speed, double desired_speed, double tolerance = 1e-4)
+      : terms_(p, desired_speed), speed_(speed), rest_(terms_.free(speed)), tolerance_(tolerance) {}
 
   /// Acceleration on a free road [m/s^2].
   [[nodiscard]] double free() const { return terms_.bounded(terms_.maximum * rest_); }
@@ -347,11 +347,43 @@ class IdmLaw {
   [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& c, double dt, double tolerance) const {
     return detail::idm_motion(terms_, speed_, c.gap, c.speed, dt, tolerance);
   }
+  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& c, double dt) const {
+    return motion(c, dt, tolerance_);
+  }
 
  private:
   IdmTerms<double> terms_;
   double speed_;
-  double rest_;  ///< see `IdmTerms::free`
+  double rest_;       ///< see `IdmTerms::free`
+  double tolerance_;  ///< [m/s^2]
+};
+
+/// The Intelligent Driver Model as a driver's law. Defaults are BARK's.
+struct Idm {
+  double desired_speed = 15.0;
+  double time_headway = 1.5;
+  double minimum_gap = 2.0;
+  double maximum_acceleration = 1.7;
+  double comfortable_deceleration = 1.67;
+  double exponent = 4.0;
+  double lowest_acceleration = -5.0;
+  double highest_acceleration = 8.0;
+  double tolerance = 1e-4;
+
+  static constexpr char const* name = "idm";
+  static constexpr char const* summary =
+      "a = a_max (1 - (v/v0)^4 - (s*/s)^2), s* = s0 + max(0, v T + v (v - v_leader) / (2 sqrt(a_max b)))";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000, eq. 3 and 4; defaults: BARK";
+  static constexpr auto parameters() {
+    return join_parameters(idm_parameters<Idm>(),
+                           parameter_list(parameter("tolerance", &Idm::tolerance, "m/s^2", Range{1e-12, 1},
+                                                    "integration error in speed, per second")));
+  }
+
+  [[nodiscard]] IdmLaw at(double speed, double desired) const { return {*this, speed, desired, tolerance}; }
+  [[nodiscard]] double acceleration(double speed, double desired, Constraint const& leader) const {
+    return at(speed, desired)(leader);
+  }
 };
 
 }  // namespace cambium

@@ -18,28 +18,6 @@
 
 namespace cambium {
 
-namespace detail {
-
-/// A neighbour as a constraint, with its acceleration if `Law` asks for it.
-template <class Law, class View>
-[[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user) {
-  Constraint constraint{user.gap, user.speed, 0.0};
-  if constexpr (Law::asks_acceleration)
-    if (is_valid(user.agent)) {
-      constraint.acceleration = view.acceleration(user);
-      double const gap = user.s - user.rear - view.place().s - view.shape().front;
-      // Before a merge the gap has to open, whatever the leader's acceleration; near it, the law must not rely on that.
-      constexpr double soon = 3.0, hardest = -1e3;  // [s], [m/s^2]
-      double const opens = user.gap - gap;
-      if (opens > 0.1)
-        constraint.acceleration =
-            std::min(constraint.acceleration, opens < map::opening_share * soon * view.state().speed ? hardest : -1.0);
-    }
-  return constraint;
-}
-
-}  // namespace detail
-
 /// What a driver heeds on the road besides other road users, shared by all driver models. A model that keeps its lane
 /// gets everything in one call:
 ///

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <algorithm>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/driver/heeding.hpp"
+#include "cambium/behavior/driver/limits.hpp"
+#include "cambium/core/described.hpp"
+#include "cambium/core/macros.hpp"
+
+namespace cambium {
+
+namespace detail {
+template <class Lateral>
+[[nodiscard]] Merging merging_of(Lateral const& lateral) {
+  if constexpr (requires { lateral.keep.merging; })
+    return lateral.keep.merging;
+  else if constexpr (requires { lateral.merging; })
+    return lateral.merging;
+  else
+    return Merging::counts;
+}
+}  // namespace detail
+
+/// A driver: a law by which it follows, a lateral part that decides where across the road it drives, and what it heeds
+/// besides.
+///
+///     view --> desired speed, by heeds --> law at that speed
+///                  lateral.look: leader, lanes that merge, lane changes --.
+///                  heeds: lane end, bends, signals, conflicts, ...      ----> Limits --> lateral.drive --> Plan
+///
+/// - `Law`: a `CarFollowing`, such as `Idm`.
+/// - `Lateral`: `KeepLane`, `TrackLine`, `ChangeLanes<Rule>`, or a described struct of your own with
+///   - `look(view, memory, limits, dt)`: decides on the course, adds who is in its way to the limits, and
+///     returns what `drive` should know;
+///   - `drive(view, memory, seen, limits, dt)`: the plan that drives `limits.within(limits.motion(dt))` there;
+///   - `merging`, or a `keep` that has it: how those in lanes that merge count, see `Merging`.
+/// - `Heeds`: see `Heeding`.
+template <CarFollowing Law, class Lateral, class... Heeds>
+struct Driver {
+  Law law{};
+  Lateral lateral{};
+  [[no_unique_address]] Heeding<Heeds...> heeds{};
+
+  struct Memory {
+    [[no_unique_address]] MemoryOf<Lateral> lateral{};
+    [[no_unique_address]] typename Heeding<Heeds...>::Memory heeds{};
+
+    void fell_short(double way, bool left_course) { cambium::fell_short(lateral, way, left_course); }
+    void was_set() { cambium::was_set(lateral); }
+
+    static constexpr char const* name = "driver_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("lateral", &P::lateral, "of the lateral part"),
+                            parameter("heeds", &P::heeds, "of what it heeds"));
+    }
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  static constexpr bool looks_beside = detail::looks_beside<Lateral>() || (detail::looks_beside<Heeds>() || ...);
+  static constexpr bool looks_around = detail::looks_around<Lateral>() || (detail::looks_around<Heeds>() || ...);
+  static constexpr bool heeds_conflicts = (detail::heeds_conflicts<Heeds>() || ...);
+
+  static constexpr char const* name = "driver";
+  static constexpr char const* summary =
+      "follows by a law, keeps or changes its lane, and heeds what it is composed of";
+  static constexpr char const* source = "see its parts";
+  static constexpr auto parameters() {
+    using P = Driver;
+    return parameter_list(parameter("law", &P::law, "by which it follows"),
+                          parameter("lateral", &P::lateral, "where across the road it drives"),
+                          parameter("heeds", &P::heeds, "what it heeds besides"));
+  }
+
+  /// One of the heeds.
+  template <class H>
+  [[nodiscard]] constexpr H& heed() {
+    return heeds.template get<H>();
+  }
+  template <class H>
+  [[nodiscard]] constexpr H const& heed() const {
+    return heeds.template get<H>();
+  }
+  /// The driver with that heed instead of its own one of that type.
+  template <class H>
+  [[nodiscard]] constexpr Driver with(H const& heed) const {
+    auto changed = *this;
+    changed.template heed<H>() = heed;
+    return changed;
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    double const speed = std::max(0.0, view.state().speed);
+    Limits<Law> limits(law, speed, heeds.desired_speed(law, view, speed),
+                       heeds.merging(view, detail::merging_of(lateral)));
+    auto const seen = lateral.look(view, memory.lateral, limits, dt);
+    heeds.heed(view, memory.heeds, limits, dt);
+    return lateral.drive(view, memory.lateral, seen, limits, dt);
+  }
+};
+
+}  // namespace cambium

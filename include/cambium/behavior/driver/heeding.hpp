@@ -1,0 +1,136 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/described.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// One part of a pack.
+template <class Part>
+struct Slotted {
+  [[no_unique_address]] Part part{};
+  friend bool operator==(Slotted const&, Slotted const&) = default;
+};
+
+/// The memory of a heed in a pack; nothing for a heed that has none.
+template <class Heed, class Memory = MemoryOf<Heed>>
+struct HeedMemory {
+  Memory memory{};
+  friend bool operator==(HeedMemory const&, HeedMemory const&) = default;
+};
+template <class Heed>
+struct HeedMemory<Heed, NoMemory> {
+  friend bool operator==(HeedMemory const&, HeedMemory const&) = default;
+};
+
+/// Index of the first of `Parts` that is `T` or derived from it; `sizeof...(Parts)` if none is.
+template <class T, class... Parts>
+[[nodiscard]] constexpr std::size_t place_of() {
+  constexpr bool is[] = {std::derived_from<Parts, T>..., true};
+  std::size_t i = 0;
+  while (!is[i]) ++i;
+  return i;
+}
+
+/// A list of no fields, or of one.
+template <class Owner, class Heed>
+[[nodiscard]] constexpr auto memory_parameter() {
+  if constexpr (std::is_same_v<MemoryOf<Heed>, NoMemory>)
+    return parameter_list();
+  else
+    return parameter_list(parameter<Owner, MemoryOf<Heed>>(
+        Heed::name, static_cast<MemoryOf<Heed> Owner::*>(&HeedMemory<Heed>::memory), "of this heed"));
+}
+
+}  // namespace detail
+
+/// What a driver heeds besides those in its lane, in this order. A heed is a described struct with one of
+/// - `heed(view, limits, dt)`, or with a memory of its own `heed(view, memory, limits, dt)`: adds to the `Limits` of a
+///   step of `dt` [s];
+/// - `double desired_speed(law, view, speed)`: lowers a driver's desired speed [m/s];
+/// and may say how the lane counts those who merge: `Merging merging(view, merging)`, from how it would else.
+template <class... Heeds>
+struct Heeding : detail::Slotted<Heeds>... {
+  struct Memory : detail::HeedMemory<Heeds>... {
+    static constexpr char const* name = "heeds_memory";
+    static constexpr auto parameters() {
+      return [](auto&& visit) { (detail::memory_parameter<Memory, Heeds>()(visit), ...); };
+    }
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  static constexpr char const* name = "heeds";
+  static constexpr auto parameters() {
+    return parameter_list(parameter<Heeding, Heeds>(
+        Heeds::name, static_cast<Heeds Heeding::*>(&detail::Slotted<Heeds>::part), Heeds::summary)...);
+  }
+
+  /// Whether `H`, or one derived from it, is among the heeds.
+  template <class H>
+  static constexpr bool contains = detail::place_of<H, Heeds...>() < sizeof...(Heeds);
+
+  template <class H>
+  [[nodiscard]] constexpr H& get() requires contains<H> {
+    return static_cast<detail::Slotted<Found<H>>&>(*this).part;
+  }
+  template <class H>
+  [[nodiscard]] constexpr H const& get() const requires contains<H> {
+    return static_cast<detail::Slotted<Found<H>> const&>(*this).part;
+  }
+
+  /// The desired speed of a driver with `law` at `speed` [m/s].
+  template <class Law, class View>
+  [[nodiscard]] double desired_speed(Law const& law, View const& view, double speed) const {
+    double desired = law.desired_speed;
+    auto const lower = [&](auto const& heed) {
+      if constexpr (requires { heed.desired_speed(law, view, speed); })
+        desired = std::min(desired, heed.desired_speed(law, view, speed));
+    };
+    (lower(part<Heeds>()), ...);
+    return desired;
+  }
+
+  /// How those who merge count, from how they would else.
+  template <class View>
+  [[nodiscard]] Merging merging(View const& view, Merging merging) const {
+    auto const ask = [&](auto const& heed) {
+      if constexpr (requires { heed.merging(view, merging); }) merging = heed.merging(view, merging);
+    };
+    (ask(part<Heeds>()), ...);
+    return merging;
+  }
+
+  /// Adds to the limits of a step of `dt` [s].
+  template <class View, class Limits>
+  void heed(View const& view, Memory& memory, Limits& limits, double dt) const {
+    (heed_one<Heeds>(view, memory, limits, dt), ...);
+  }
+
+  friend bool operator==(Heeding const&, Heeding const&) = default;
+
+ private:
+  template <class H>
+  using Found = std::tuple_element_t<detail::place_of<H, Heeds...>(), std::tuple<Heeds...>>;
+
+  template <class H>
+  [[nodiscard]] H const& part() const {
+    return static_cast<detail::Slotted<H> const&>(*this).part;
+  }
+  template <class H, class View, class Limits>
+  void heed_one(View const& view, [[maybe_unused]] Memory& memory, Limits& limits, double dt) const {
+    if constexpr (requires { part<H>().heed(view, limits, dt); })
+      part<H>().heed(view, limits, dt);
+    else if constexpr (!std::is_same_v<MemoryOf<H>, NoMemory>)
+      part<H>().heed(view, static_cast<detail::HeedMemory<H>&>(memory).memory, limits, dt);
+  }
+};
+
+}  // namespace cambium

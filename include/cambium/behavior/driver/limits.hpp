@@ -1,0 +1,148 @@
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <limits>
+#include <utility>
+
+#include "cambium/behavior/law/constraint.hpp"
+#include "cambium/behavior/law/follow_motion.hpp"
+#include "cambium/behavior/view.hpp"
+#include "cambium/core/described.hpp"
+
+namespace cambium {
+
+/// A car-following law: a described struct of parameters with
+/// - the six that every driver has: desired speed [m/s], time headway [s], minimum gap [m], maximum acceleration and
+///   comfortable deceleration (above 0), and lowest acceleration (below 0) [m/s^2];
+/// - `double acceleration(double speed, double desired_speed, Constraint const& leader) const` [m/s^2], never higher
+///   than on a free road, where the gap is infinite; it is always above 0. `desired_speed` is the parameter, or less
+///   where a limit is lower: a law that follows it with a lag passes the sign too fast.
+///
+/// A law may further have
+/// - `static constexpr bool asks_acceleration = true`, if it wants to know a leader's acceleration;
+/// - `at(speed, desired_speed)`, which returns what `AtSpeed` is for all laws, if it is computed faster for several
+///   leaders at one speed, or has a better integration scheme than `follow_motion`.
+template <class L>
+concept CarFollowing = std::copyable<L> && Described<L> && requires(L const law, Constraint const& leader, double x) {
+  { law.desired_speed } -> std::convertible_to<double>;
+  { law.time_headway } -> std::convertible_to<double>;
+  { law.minimum_gap } -> std::convertible_to<double>;
+  { law.maximum_acceleration } -> std::convertible_to<double>;
+  { law.comfortable_deceleration } -> std::convertible_to<double>;
+  { law.lowest_acceleration } -> std::convertible_to<double>;
+  { law.acceleration(x, x, leader) } -> std::convertible_to<double>;
+};
+
+/// A law at one speed, by its `acceleration` alone.
+template <CarFollowing Law>
+class AtSpeed {
+ public:
+  static constexpr bool asks_acceleration = requires { requires Law::asks_acceleration; };
+
+  /// Refers to `law`, which has to live as long. Speeds in m/s.
+  AtSpeed(Law const& law, double speed, double desired_speed)
+      : law_(&law), speed_(speed), desired_speed_(desired_speed) {}
+
+  /// Acceleration behind a leader [m/s^2].
+  [[nodiscard]] double operator()(Constraint const& leader) const { return (*this)(speed_, leader); }
+  /// The same at another speed [m/s].
+  [[nodiscard]] double operator()(double speed, Constraint const& leader) const {
+    if (!(leader.gap > 0.0)) return law_->lowest_acceleration;
+    return std::max<double>(law_->lowest_acceleration, law_->acceleration(speed, desired_speed_, leader));
+  }
+
+  [[nodiscard]] double speed() const { return speed_; }                  ///< [m/s]
+  [[nodiscard]] double desired_speed() const { return desired_speed_; }  ///< [m/s]
+
+  /// Motion of a step of `dt` [s] behind a leader of constant speed.
+  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
+    return follow_motion(*this, speed_, leader, dt);
+  }
+
+ private:
+  Law const* law_;
+  double speed_, desired_speed_;
+};
+
+/// `law` at `speed` with `desired_speed` [m/s].
+template <CarFollowing Law>
+[[nodiscard]] auto at_speed(Law const& law, double speed, double desired_speed) {
+  if constexpr (requires { law.at(speed, desired_speed); })
+    return law.at(speed, desired_speed);
+  else
+    return AtSpeed<Law>(law, speed, desired_speed);
+}
+
+/// What bounds a driver's motion in this step: the strictest constraint of its law, and the shortest motion. Bends,
+/// signals and conflicts bound the motion instead of being constraints of the law, because a driver brakes for them
+/// evenly and exactly to a point, while a law would keep a time headway to them.
+template <CarFollowing Law>
+class Limits {
+ public:
+  using Response = decltype(at_speed(std::declval<Law const&>(), 0.0, 0.0));
+
+  /// Of a driver at `speed` that desires `desired_speed` [m/s]. Refers to `law`, which has to live as long.
+  Limits(Law const& law, double speed, double desired_speed, Merging counted = Merging::counts)
+      : merging(counted), law_(&law), desired_speed_(desired_speed), response_(at_speed(law, speed, desired_speed)) {}
+
+  [[nodiscard]] Law const& law() const { return *law_; }                 ///< the driver's parameters
+  [[nodiscard]] double desired_speed() const { return desired_speed_; }  ///< within speed limits [m/s]
+  [[nodiscard]] Response const& response() const { return response_; }   ///< the law at the driver's speed
+
+  /// Keeps a constraint if it is stricter: if the law responds to it with a lower acceleration; among equals, the
+  /// nearer one.
+  void heed(Constraint const& other) {
+    if (constraint_.gap < infinite) {  // a single constraint needs no comparison
+      double const a = response_(other);
+      if (!(a < acceleration() || (a == acceleration() && other.gap < constraint_.gap))) return;
+      acceleration_ = a;
+    } else {
+      acceleration_ = not_asked;  // that of the free road may have been asked for
+    }
+    constraint_ = other;
+  }
+  /// As if none had been kept yet.
+  void forget_constraints() {
+    constraint_ = {};
+    acceleration_ = not_asked;
+  }
+  /// Keeps a motion over the step if it is shorter.
+  void bound(LongitudinalMotion<double> const& motion) { bound_ = nearer(bound_, motion); }
+
+  [[nodiscard]] Constraint const& constraint() const { return constraint_; }
+  /// The law's response to the constraint [m/s^2].
+  [[nodiscard]] double acceleration() {
+    if (acceleration_ == not_asked) acceleration_ = response_(constraint_);
+    return acceleration_;
+  }
+  /// The law's motion over `dt` [s], without the bound.
+  [[nodiscard]] LongitudinalMotion<double> motion(double dt) const { return response_.motion(constraint_, dt); }
+  /// `motion`, or the bound if that is shorter.
+  [[nodiscard]] LongitudinalMotion<double> within(LongitudinalMotion<double> const& motion) const {
+    return nearer(motion, bound_);
+  }
+
+ private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity(), not_asked = infinite;
+
+ public:
+  Merging merging = Merging::counts;  ///< how those who merge into the lane count
+  double highest_speed = infinite;    ///< in the bends within the braking distance [m/s]
+  bool is_at_light = false;           ///< it stands before a light that stops it
+
+ private:
+  [[nodiscard]] static LongitudinalMotion<double> nearer(LongitudinalMotion<double> const& motion,
+                                                         LongitudinalMotion<double> const& other) {
+    return other.distance < motion.distance ? other : motion;
+  }
+
+  Law const* law_;
+  double desired_speed_;
+  Response response_;
+  Constraint constraint_;
+  double acceleration_ = not_asked;
+  LongitudinalMotion<double> bound_{infinite, infinite};
+};
+
+}  // namespace cambium

@@ -1,0 +1,389 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/lateral/keep_lane.hpp"
+#include "cambium/behavior/lateral/lane_option.hpp"
+#include "cambium/behavior/law/braking.hpp"
+#include "cambium/behavior/law/constraint.hpp"
+#include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/core/described.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/macros.hpp"
+
+namespace cambium {
+
+/// A driver that keeps its lane, as seen by the rule that decides on lane changes.
+template <class View, class Limits, class Changing>
+struct LaneChoice {
+  View const& view;
+  Limits& limits;                         ///< what it follows; the rule may add to it
+  std::optional<RoadUser> const& leader;  ///< next ahead
+  double lane_end;                        ///< see `cambium::lane_end`
+  bool may_change;                        ///< the rest since the last change is over
+  Changing const& changing;               ///< knows what is safe
+
+  /// The acceleration behind a road user in a lane beside, or on a free road [m/s^2].
+  [[nodiscard]] double response(std::optional<RoadUser> const& front) const {
+    return limits.response()(front ? detail::constraint_beside<typename Limits::Response>(view, *front) : Constraint{});
+  }
+};
+
+/// Keeps its lane, and changes lanes where a rule such as `MobilRule` says so: a described struct with
+///   `template <class Choice> CorridorId operator()(Choice const& choice) const`
+/// that returns the lane corridor to change to, or none, for a `LaneChoice`. It is not called during a change. The
+/// lateral part knows what the driver assumes of others, which gaps are safe, how the vehicle gets there and when it
+/// gives up.
+///
+///    ======================================================  lane beyond
+///      [rear]                . - - - - - - - ->   [front]    target lane: new follower, new leader
+///    - - - - - - - - - - . ' - - - - - - - - - - - - - - -
+///            [own] - - '   quintic course          [leader]  own lane
+///    ======================================================
+///
+/// - Before: the vehicle follows its leader. Before static objects and lane ends that it must avoid, it stops early
+///   enough that the shortest change still fits. (A long vehicle that already stands closer stays there.)
+/// - Safe: nobody has to brake harder than `safe_deceleration`, assuming IDM with the parameters `others` (`trucks` for
+///   long vehicles) and a desired speed not below the present one. Vehicles that enter the same gap from the lane
+///   beyond count, too.
+/// - During: the vehicle follows the leaders in all lanes that it occupies. It turns back if the change becomes unsafe
+///   (`abort_deceleration`) and the way back stays within the old lane.
+/// - After: it rests for `rest` before the next change; after an abort for a random time, so that two drivers who
+///   aborted for each other do not meet again.
+template <class Rule>
+struct ChangeLanes {
+  Rule rule{};
+  KeepLane keep{};
+  Idm others{};
+  Idm trucks{.desired_speed = 23.0, .time_headway = 1.7, .maximum_acceleration = 0.9};
+  double truck_length = 7.5;
+  double safe_deceleration = 4.0;
+  double abort_deceleration = 4.5;
+  double safe_gap = 1.0;
+  double rest = 3.0;
+  bool heed_marks = true;
+  bool leaves_room = false;
+  LaneChangeCourse course{};
+
+  static constexpr char const* name = "change_lanes";
+  static constexpr char const* summary =
+      "keeps its lane, and changes lanes by a rule: along a smooth course, followed by a rest; aborted if it becomes "
+      "unsafe";
+
+  static constexpr char const* source = "own";
+  static constexpr auto parameters() {
+    using P = ChangeLanes;
+    return parameter_list(
+        parameter("rule", &P::rule, "decides when to change, and where to"),
+        parameter("keep", &P::keep, "how it keeps its lane"),
+        parameter("others", &P::others, "what it assumes of other drivers"),
+        parameter("trucks", &P::trucks, "what it assumes of drivers of long vehicles"),
+        parameter("truck_length", &P::truck_length, "m", Range{0, 100}, "vehicles longer than this are trucks"),
+        parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0, 20}, "nobody is made to brake harder"),
+        parameter("abort_deceleration", &P::abort_deceleration, "m/s^2", Range{0, 20},
+                  "a change is aborted if somebody would have to brake harder"),
+        parameter("safe_gap", &P::safe_gap, "m", Range{0, 100}, "smallest gap for a change, whatever the speeds"),
+        parameter("rest", &P::rest, "s", Range{0, 600}, "from the end of a change to the next one"),
+        parameter("heed_marks", &P::heed_marks, "change only where the road marks permit it"),
+        parameter("leaves_room", &P::leaves_room,
+                  "stays far enough behind those who stand that a change fits, see `LaneChangeCourse::leave_room`"),
+        parameter("course", &P::course, "how long a change takes"));
+  }
+
+  /// What the driver remembers.
+  struct Memory {
+    LaneChange change{};
+    float rest{};  ///< time until the next change may begin [s]
+    KeepLane::Memory lane{};
+
+    void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
+    void was_set() { lane.was_set(); }
+
+    static constexpr char const* name = "change_lanes_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("change", &P::change, "the change under way"),
+                            parameter("rest", &P::rest, "s", any_finite, "until the next change may begin"),
+                            parameter("lane", &P::lane, "where in its lane it drives"));
+    }
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  static constexpr bool looks_beside = true;
+
+  /// Decides on changes, and adds the leaders in all lanes that the vehicle occupies, those who merge, and the end of a
+  /// lane that it must leave. Returns the leader in its lane.
+  template <class View, class Limits>
+  [[nodiscard]] std::optional<RoadUser> look(View const& view, Memory& memory, Limits& limits, double dt) const {
+    double const speed = limits.response().speed();
+    auto const leader = memory.change.active() ? view.ahead({.merging = limits.merging})
+                                               : keep.next_in_way(view, limits, memory.lane, passes_in_lane(view));
+    auto const home = view.place().corridor;
+    memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
+    course.renew(memory.change, view.shape(), speed);
+    if (memory.lane.adrift) [[unlikely]]
+      enter(view, memory);
+    if (memory.change.target == home && speed < standing_speed &&
+        distance_to_stop(view, view.place()) < limits.law().minimum_gap + 1)
+      memory.change = {};  // the vehicle must leave this lane, too, and has no room left to reach its middle first
+    if (memory.change.active()) {
+      if (memory.change.target != home && !may_go_on(view, limits, memory.change)) abort(view, speed, memory);
+      limits = while_changing(view, limits, leader, memory.change);
+    } else {
+      heed_in_lane(view, limits, leader);
+      double const end = lane_end(view, home, view.place().piece);
+      bool const is_passing = memory.lane.aside != 0 && !keep.keep_to_side && end == infinite;
+      bool const may_change = memory.rest == 0.0f && !is_passing;
+      auto const target = rule(LaneChoice<View, Limits, ChangeLanes>{view, limits, leader, end, may_change, *this});
+      if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
+        memory.change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
+        memory.rest = static_cast<float>(rest + course.duration);
+        limits.forget_constraints();
+        limits = while_changing(view, limits, leader, memory.change);
+      }
+    }
+    if (!view.corridor().feeders.empty()) [[unlikely]]
+      limits = with_merging(view, leader, memory.change.active() && memory.change.target != home, limits);
+    return leader;
+  }
+
+  template <class View, class Limits>
+  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, std::optional<RoadUser> const& leader,
+                                 Limits const& limits, double dt) const {
+    auto motion = limits.motion(dt);
+    if (leaves_room && leader && !memory.change.active()) motion = course.leave_room(view, *leader, motion, dt);
+    auto const bounded = limits.within(motion);
+    if (memory.lane.aside != 0) [[unlikely]] {
+      if (!memory.change.active()) {
+        memory.change.bend = 0.0f;
+        return keep.along_lane(view, bounded, dt, memory.lane);
+      }
+      memory.lane.aside = 0;
+    }
+    return plan_lane_change(view, memory.change, bounded, dt);
+  }
+
+  /// The car following that this driver assumes of a follower.
+  [[nodiscard]] IdmLaw law_of(RoadUser const& who) const {
+    auto const& assumed = who.length() > truck_length ? trucks : others;
+    return IdmLaw(assumed, std::max(0.0, who.speed), std::max(assumed.desired_speed, who.speed));
+  }
+
+  /// Whether a change is safe: all gaps exceed `safe_gap` and nobody has to brake harder than `deceleration` [m/s^2].
+  /// This includes vehicles that enter the same gap from the lane beyond.
+  template <class View, class Limits>
+  CAMBIUM_NOINLINE [[nodiscard]] bool is_safe(View const& view, Limits const& limits, LaneOption const& option,
+                                              double deceleration) const {
+    using Response = typename Limits::Response;
+    auto const& law = limits.response();
+    auto const front_is_safe = [&](RoadUser const& n) {
+      return n.gap > safe_gap && law(detail::constraint_beside<Response>(view, n)) >= -deceleration;
+    };
+    auto const rear_is_safe = [&](RoadUser const& n) {
+      return n.gap > safe_gap && (is_object(n) || law_of(n)(n.gap, law.speed()) >= -deceleration);
+    };
+    if (option.front && !front_is_safe(*option.front)) return false;
+    if (option.rear && !rear_is_safe(*option.rear)) return false;
+    auto const& there = view.road().corridors[option.place.corridor].pieces[option.place.piece];
+    auto const beyond = there.beside(option.left);
+    if (beyond == none<CorridorId> || beyond == view.place().corridor) return true;
+    auto const others_there = view.place(beyond);
+    auto const front = view.ahead(others_there), rear = view.behind(others_there);
+    if (front && comes(view, *front, option, true) && !front_is_safe(*front)) return false;
+    return !(rear && comes(view, *rear, option, false) && !rear_is_safe(*rear));
+  }
+
+  /// Distance [m] of two changes at `speed` [m/s] and the rest between them.
+  [[nodiscard]] double there_and_back(double speed) const { return speed * (2.0 * course.duration + rest); }
+
+  /// Whether the road marks permit a change or are ignored.
+  template <class View>
+  [[nodiscard]] bool marks_permit(View const& view, bool left) const {
+    if (!heed_marks) return true;
+    auto const& at = view.place();
+    auto const& piece = view.corridor().pieces[at.piece];
+    auto const& lane = view.map().lane(piece.lane);
+    double const s = at.s + piece.lane_offset;
+    return left ? lane.may_change_left(s) : lane.may_change_right(s);
+  }
+
+ private:
+  /// Whether the driver may pass slower road users within its lane: not where other lanes merge in, because their
+  /// traffic counts as a whole. Merges beyond the corridor's end do not matter.
+  template <class View>
+  [[nodiscard]] static bool passes_in_lane(View const& view) {
+    auto const& corridor = view.corridor();
+    return corridor.feeders.empty() || corridor.feeders.front().begin >= corridor.length();
+  }
+
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  /// A vehicle that changes lanes passes road users slower than this, which stand or hardly move [m/s].
+  static constexpr double passed_below = 0.5;
+
+  /// Goes on with the change that the vehicle is in when it enters.
+  template <class View>
+  void enter(View const& view, Memory& memory) const {
+    memory.lane.adrift = false;
+    if (memory.change.active()) return;
+    memory.change = course.under_way(view);
+    if (memory.change.active()) memory.rest = std::max(memory.rest, static_cast<float>(rest + course.duration));
+  }
+
+  [[nodiscard]] static bool is_object(RoadUser const& n) { return is_valid(n.object); }
+
+  /// Whether a neighbour in the lane beyond that of `option` moves into it.
+  template <class View>
+  [[nodiscard]] static bool comes(View const& view, RoadUser const& who, LaneOption const& option, bool ahead) {
+    if (!is_valid(who.agent)) return false;
+    auto const& shape = view.shape(who);
+    auto const& state = view.state(who);
+    double const distance =
+        ahead ? view.shape().front + who.gap + shape.rear : -(view.shape().rear + who.gap + shape.front);
+    auto segment = option.place.segment;
+    double const along =
+        view.road().corridors[option.place.corridor].center.pose(option.place.s + distance, segment).heading;
+    double const leftwards = state.speed * std::sin(state.heading - along);
+    return (option.left ? -leftwards : leftwards) > detail::least_drift;
+  }
+
+  template <class View, class Limits>
+  CAMBIUM_NOINLINE [[nodiscard]] bool may_go_on(View const& view, Limits const& limits,
+                                                LaneChange const& change) const {
+    auto const& at = view.place();
+    auto const& piece = view.corridor().pieces[at.piece];
+    LaneOption option{view.place(change.target), change.target == piece.left, {}, {}};
+    if (!option.left && change.target != piece.right) return true;  // no longer beside: the lanes have merged
+    option.front = view.ahead(option.place);
+    option.rear = view.behind(option.place);
+    return is_safe(view, limits, option, abort_deceleration);
+  }
+
+  /// Turns back if the way back stays within the old lane. The rest that follows is random, see above.
+  template <class View>
+  CAMBIUM_NOINLINE void abort(View const& view, double speed, Memory& memory) const {
+    constexpr std::uint32_t purpose = 0x4c43u;
+    auto const& at = view.place();
+    auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, memory.change.bend);
+    if (!detail::stays_within_lane(view, back)) return;
+    auto random = view.random(purpose);
+    memory.change = back;
+    memory.rest = static_cast<float>(course.shortest_duration + rest * (0.5 + uniform01(random)));
+  }
+
+  /// Whether the vehicle fits into the lane `beside` when it arrives there, `ahead` [m]: lanes may open slowly.
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] static bool is_wide_enough(View const& view, CorridorId beside, double ahead) {
+    auto const& lane = view.road().corridors[beside];
+    double const s = std::min(view.place(beside).s + ahead, lane.length());
+    return lane.width_at(s) > view.shape().width();
+  }
+
+  /// Distance [m] that the vehicle's front may still drive from `at` in a lane that it must leave; infinite if it may
+  /// stay. It leaves room for the shortest change for each lane to cross. A vehicle that goes to the left stops
+  /// earlier, so that two vehicles that need each other's lanes do not stop side by side.
+  template <class View, class Place>
+  [[nodiscard]] double distance_to_stop(View const& view, Place const& at) const {
+    double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
+    if (until_end == infinite) return infinite;
+    auto const lanes = lanes_to_cross(view, at.corridor, at.piece, at.s);
+    double const changes = lanes.left > 0 ? lanes.left + 0.5 : std::max(1, lanes.right);
+    return until_end - view.shape().front - changes * course.least_length(view.shape());
+  }
+
+  /// Longest permissible length of a change [m]: it must end before the lane does, lead around a standing object, and
+  /// leave room for the next change.
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] double longest_change(View const& view, std::optional<RoadUser> const& leader,
+                                                       CorridorId target) const {
+    auto const& at = view.place();
+    double const until_end =
+        std::min(dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, view.place(target)));
+    double const beside_object = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
+    return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
+  }
+
+  /// Adds a leader in a lane that the vehicle stays in; before an object it leaves room to change.
+  template <class View, class Limits>
+  void add_leader(View const& view, Limits& limits, std::optional<RoadUser> const& leader, bool has_side) const {
+    if (!leader) return;
+    double const room = is_object(*leader) && has_side ? detail::out_of_lane * course.least_length(view.shape()) : 0.0;
+    auto constraint = detail::constraint_beside<typename Limits::Response>(view, *leader);
+    constraint.gap -= room;
+    limits.heed(constraint);
+  }
+
+  /// `limits` with the vehicles that merge, and the next one in the own lane: not only the nearest of them all,
+  /// `leader`. A vehicle that leaves its lane passes those that stand there. It takes copies, so that the originals can
+  /// stay in registers.
+  template <class View, class Limits>
+  CAMBIUM_NOINLINE [[nodiscard]] Limits with_merging(View view, std::optional<RoadUser> leader, bool leaves,
+                                                     Limits limits) const {
+    view.each_ahead({.merging = limits.merging}, [&](RoadUser const& next) {
+      if ((leader && next.agent == leader->agent && next.object == leader->object) ||
+          (leaves && next.speed < passed_below))
+        return;
+      limits.heed(detail::constraint_beside<typename Limits::Response>(view, next));
+    });
+    if (auto const gap = keep.gap_to_wait_for(view, limits.merging)) limits.heed(*gap);
+    return limits;
+  }
+
+  template <class Limits>
+  static void add_stop(Limits& limits, double way) {
+    if (way < infinite) limits.heed({way, 0.0});
+  }
+
+  template <class View, class Limits>
+  void heed_in_lane(View const& view, Limits& limits, std::optional<RoadUser> const& leader) const {
+    auto const& at = view.place();
+    auto const& piece = view.corridor().pieces[at.piece];
+    add_leader(view, limits, leader, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
+    add_stop(limits, distance_to_stop(view, at));
+  }
+
+  /// `limits` with those that count during a change.
+  template <class View, class Limits>
+  CAMBIUM_NOINLINE [[nodiscard]] Limits while_changing(View const& view, Limits limits,
+                                                       std::optional<RoadUser> const& leader,
+                                                       LaneChange const& change) const {
+    auto const& at = view.place();
+    auto const& corridor = view.corridor();
+    auto const& piece = corridor.pieces[at.piece];
+    double const left = change.left, around = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
+    auto const is_passed = [&](RoadUser const& n, double until) {  // the course leads around it
+      return n.speed < passed_below && n.gap > until;
+    };
+    if (change.target == at.corridor) {
+      add_leader(view, limits, leader, true);
+      add_stop(limits, distance_to_stop(view, at));
+      // While the body extends over the border, the leader there counts, too.
+      auto const sides = corridor.widths_at(at.s, at.segment);
+      auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
+                          : view.shape().right - at.lateral > sides.right ? piece.right
+                                                                          : none<CorridorId>;
+      if (beside == none<CorridorId>) return limits;
+      auto const other = view.ahead(view.place(beside));
+      if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))
+        limits.heed(detail::constraint_beside<typename Limits::Response>(view, *other));
+      return limits;
+    }
+    if (leader && !is_passed(*leader, left - around))
+      limits.heed(detail::constraint_beside<typename Limits::Response>(view, *leader));
+    double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
+    if (until_end < 0.6 * left) limits.heed({until_end - view.shape().front, 0.0});
+    auto const there = view.place(change.target);
+    add_leader(view, limits, view.ahead(there), true);
+    // The vehicle may enter the neighbouring lane even if that ends soon.
+    add_stop(limits, std::max(distance_to_stop(view, there), 0.6 * left + limits.law().minimum_gap + 1.0));
+    return limits;
+  }
+};
+
+}  // namespace cambium
