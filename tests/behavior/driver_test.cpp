@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,10 +60,10 @@ void fill_in_queues(World& world, Make const& behavior) {
 }
 
 template <class Whole, class Composed>
-void check_equal(Whole const& whole, Composed const& composed) {
+void check_equal(Whole const& whole, Composed const& composed, std::initializer_list<double> steps = {0.1, 0.2, 0.5}) {
   using Sim = World<BehaviorSet<Whole, Composed>, InterpolateExecution, SingleTrack>;
   for (auto const* const name : {"merging.xodr", "roundabout.xodr", "intersection_4way.xodr", "highway_exit.xodr"})
-    for (double const dt : {0.1, 0.2, 0.5}) {
+    for (double const dt : steps) {
       CAPTURE(name);
       CAPTURE(dt);
       auto const map = support::own_map(name);
@@ -131,6 +132,23 @@ TEST_CASE("a composed driver heeds the lane's end, limits, bends and signals as 
 TEST_CASE("a composed driver that changes lanes by MOBIL is Mobil") {
   using Composed = Driver<Idm, ChangeLanes<MobilRule<>>, Bends, Pedestrians>;
   check_equal(Mobil{}, Composed{}.with(Bends{.lateral_acceleration = 3.0}));
+}
+
+TEST_CASE(
+    "composed drivers by the ACC model and the rule of free space are AdaptiveCruiseControl and LaneChangeRuleBased") {
+  check_equal(AdaptiveCruiseControl{}, Driver<Acc, KeepLane, Pedestrians>{});
+  using Composed = Driver<Idm, ChangeLanes<FreeSpaceRule>, Bends, Pedestrians>;
+  check_equal(LaneChangeRuleBased{}, Composed{}.with(Bends{.lateral_acceleration = 3.0}));
+}
+
+TEST_CASE("a composed driver that zips is ZipMerge where all drive in the middle of their lanes") {
+  // Beside it, ZipMerge returns to the middle, while KeepLane keeps its offset.
+  check_equal(ZipMerge{}, Driver<Idm, KeepLane, Pedestrians, Zip>{}, {0.2});
+}
+
+TEST_CASE("a composed driver that steers to its line is IdmLaneTracking, in steps of one part") {
+  using Composed = Driver<Idm, TrackLine, Bends, Pedestrians>;
+  check_equal(IdmLaneTracking{}, Composed{}.with(Bends{.lateral_acceleration = 3.4}), {0.1, 0.2});
 }
 
 TEST_CASE("a composed driver that heeds conflicts is Intersection") {

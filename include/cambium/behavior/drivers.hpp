@@ -8,10 +8,13 @@
 #include "cambium/behavior/heed/pedestrians.hpp"
 #include "cambium/behavior/heed/signals.hpp"
 #include "cambium/behavior/heed/speed_limit.hpp"
+#include "cambium/behavior/heed/zip.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/lateral/change_lanes.hpp"
+#include "cambium/behavior/lateral/free_space_rule.hpp"
 #include "cambium/behavior/lateral/keep_lane.hpp"
 #include "cambium/behavior/lateral/mobil_rule.hpp"
+#include "cambium/behavior/lateral/track_line.hpp"
 
 namespace cambium {
 

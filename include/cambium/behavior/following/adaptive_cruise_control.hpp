@@ -41,8 +41,12 @@ class AccLaw {
   /// Of a driver with IDM parameters `p` at `speed` [m/s]; `coolness` weighs the constant-acceleration heuristic, 0
   /// to 1.
   template <HasIdmParameters P>
-  AccLaw(P const& p, double coolness, double speed)
-      : terms_(p), comfortable_(p.comfortable_deceleration), coolness_(coolness), speed_(speed) {}
+  AccLaw(P const& p, double coolness, double speed) : AccLaw(p, coolness, speed, p.desired_speed) {}
+
+  /// The same with another desired speed [m/s].
+  template <HasIdmParameters P>
+  AccLaw(P const& p, double coolness, double speed, double desired_speed)
+      : terms_(p, desired_speed), comfortable_(p.comfortable_deceleration), coolness_(coolness), speed_(speed) {}
 
   /// Acceleration behind a leader [m/s^2].
   [[nodiscard]] double operator()(Constraint const& leader) const { return (*this)(speed_, leader); }
@@ -68,6 +72,39 @@ class AccLaw {
  private:
   IdmTerms<double> terms_;
   double comfortable_, coolness_, speed_;
+};
+
+/// The ACC model as a driver's law: IDM without the overreaction to small gaps, such as after another vehicle has cut
+/// in, if the leader's acceleration makes them harmless.
+struct Acc {
+  static constexpr bool asks_acceleration = true;
+
+  double desired_speed = Idm{}.desired_speed;
+  double time_headway = Idm{}.time_headway;
+  double minimum_gap = Idm{}.minimum_gap;
+  double maximum_acceleration = Idm{}.maximum_acceleration;
+  double comfortable_deceleration = Idm{}.comfortable_deceleration;
+  double exponent = Idm{}.exponent;
+  double lowest_acceleration = Idm{}.lowest_acceleration;
+  double highest_acceleration = Idm{}.highest_acceleration;
+  double coolness = 0.99;
+
+  static constexpr char const* name = "acc";
+  static constexpr char const* summary =
+      "IDM, but where it brakes harder than the constant-acceleration heuristic c requires: (1 - coolness) a_IDM + "
+      "coolness (c + b tanh((a_IDM - c) / b))";
+  static constexpr char const* source = "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6";
+  static constexpr auto parameters() {
+    return join_parameters(
+        idm_parameters<Acc>(),
+        parameter_list(parameter("coolness", &Acc::coolness, "-", Range{0, 1},
+                                 "0: IDM; 1: brakes no harder than the leader's acceleration requires")));
+  }
+
+  [[nodiscard]] AccLaw at(double speed, double desired) const { return {*this, coolness, speed, desired}; }
+  [[nodiscard]] double acceleration(double speed, double desired, Constraint const& leader) const {
+    return at(speed, desired)(leader);
+  }
 };
 
 /// Follows its lane corridor and the next vehicle in it by the ACC model: IDM without the overreaction to small gaps,
