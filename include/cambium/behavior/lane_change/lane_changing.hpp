@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "cambium/behavior/lane_change/lane_change.hpp"
-#include "cambium/behavior/lateral/lane_option.hpp"
+#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"

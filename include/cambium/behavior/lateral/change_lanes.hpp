@@ -8,7 +8,7 @@
 
 #include "cambium/behavior/lane_change/lane_change.hpp"
 #include "cambium/behavior/lateral/keep_lane.hpp"
-#include "cambium/behavior/lateral/lane_option.hpp"
+#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/law/idm.hpp"
