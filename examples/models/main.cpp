@@ -37,7 +37,6 @@ std::vector<Model> behaviors() {
           model<cb::LaneChangeRuleBased>("LaneChangeRuleBased"),
           model<cb::ZipMerge>("ZipMerge"),
           model<cb::Intersection>("Intersection"),
-          model<cb::UrbanDriver>("UrbanDriver"),
           model<cb::RssConformant<cb::IdmClassic>>("RssConformant<Nominal>"),
           model<cb::HumanDriver<cb::IdmClassic>>("HumanDriver<Nominal>"),
           model<cb::Pedestrian>("Pedestrian"),

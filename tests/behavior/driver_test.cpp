@@ -109,6 +109,7 @@ struct Gipps {
   }
 };
 static_assert(CarFollowing<Gipps>);
+static_assert(BehaviorModel<UrbanDriver>);
 
 }  // namespace
 

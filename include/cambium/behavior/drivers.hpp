@@ -23,6 +23,5 @@ namespace cambium {
 template <CarFollowing Law = Idm>
 using BasicUrbanDriver = Driver<Law, ChangeLanes<MobilRule<>>, SpeedLimit, Bends, Signals, Pedestrians, Conflicts>;
 using UrbanDriver = BasicUrbanDriver<>;
-static_assert(BehaviorModel<UrbanDriver>);
 
 }  // namespace cambium
