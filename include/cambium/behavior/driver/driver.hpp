@@ -6,11 +6,11 @@
 #include "cambium/behavior/driver/heeding.hpp"
 #include "cambium/behavior/driver/limits.hpp"
 #include "cambium/core/described.hpp"
-#include "cambium/core/macros.hpp"
 
 namespace cambium {
 
 namespace detail {
+/// How road users count that merge into the lane, as a driver's lateral part says.
 template <class Lateral>
 [[nodiscard]] Merging merging_of(Lateral const& lateral) {
   if constexpr (requires { lateral.keep.merging; })
@@ -22,8 +22,8 @@ template <class Lateral>
 }
 }  // namespace detail
 
-/// A driver: a law by which it follows, a lateral part that decides where across the road it drives, and what it heeds
-/// besides.
+/// A driver composed of a law by which it follows, a lateral part that decides where across the road it drives, and
+/// what it heeds besides.
 ///
 ///     view --> desired speed, by heeds --> law at that speed
 ///                  lateral.look: leader, lanes that merge, lane changes --.
@@ -34,7 +34,7 @@ template <class Lateral>
 ///   - `look(view, memory, limits, dt)`: decides on the course, adds who is in its way to the limits, and
 ///     returns what `drive` should know;
 ///   - `drive(view, memory, seen, limits, dt)`: the plan that drives `limits.within(limits.motion(dt))` there;
-///   - `merging`, or a `keep` that has it: how those in lanes that merge count, see `Merging`.
+///   - `merging`, or a part `keep` with it: how road users count that merge into the lane, see `Merging`.
 /// - `Heeds`: see `Heeding`.
 template <CarFollowing Law, class Lateral, class... Heeds>
 struct Driver {
@@ -83,7 +83,7 @@ struct Driver {
   [[nodiscard]] constexpr H const& heed() const {
     return heeds.template get<H>();
   }
-  /// The driver with that heed instead of its own one of that type.
+  /// A copy with `heed` instead of its own one of that type.
   template <class H>
   [[nodiscard]] constexpr Driver with(H const& heed) const {
     auto changed = *this;

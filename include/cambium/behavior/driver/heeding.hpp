@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <tuple>
@@ -40,7 +41,7 @@ template <class T, class... Parts>
   return i;
 }
 
-/// A list of no fields, or of one.
+/// The memory of a heed as a list of fields; none for a heed without one.
 template <class Owner, class Heed>
 [[nodiscard]] constexpr auto memory_parameter() {
   if constexpr (std::is_same_v<MemoryOf<Heed>, NoMemory>)
@@ -52,11 +53,13 @@ template <class Owner, class Heed>
 
 }  // namespace detail
 
-/// What a driver heeds besides those in its lane, in this order. A heed is a described struct with one of
-/// - `heed(view, limits, dt)`, or with a memory of its own `heed(view, memory, limits, dt)`: adds to the `Limits` of a
+/// What a driver heeds besides the road users in its lane, in this order. A heed is a described struct with a `summary`
+/// and one of these functions:
+/// - `heed(view, limits, dt)`, or with a `Memory` of its own `heed(view, memory, limits, dt)`, adds to the `Limits` of
+/// a
 ///   step of `dt` [s];
-/// - `double desired_speed(law, view, speed)`: lowers a driver's desired speed [m/s];
-/// and may say how the lane counts those who merge: `Merging merging(view, merging)`, from how it would else.
+/// - `double desired_speed(law, view, speed)` lowers the driver's desired speed [m/s].
+/// It may also have `Merging merging(view, merging)`, which changes how road users count that merge into the lane.
 template <class... Heeds>
 struct Heeding : detail::Slotted<Heeds>... {
   struct Memory : detail::HeedMemory<Heeds>... {
@@ -98,7 +101,7 @@ struct Heeding : detail::Slotted<Heeds>... {
     return desired;
   }
 
-  /// How those who merge count, from how they would else.
+  /// How road users count that merge into the lane; without these heeds as `merging` says.
   template <class View>
   [[nodiscard]] Merging merging(View const& view, Merging merging) const {
     auto const ask = [&](auto const& heed) {
@@ -130,6 +133,12 @@ struct Heeding : detail::Slotted<Heeds>... {
       part<H>().heed(view, limits, dt);
     else if constexpr (!std::is_same_v<MemoryOf<H>, NoMemory>)
       part<H>().heed(view, static_cast<detail::HeedMemory<H>&>(memory).memory, limits, dt);
+    else
+      static_assert(
+          requires { part<H>().desired_speed(limits.law(), view, dt); },
+          "cambium::Driver<Law, Lateral, Heeds...>: each heed must have `template <class View, class Limits> "
+          "void heed(View const&, Limits&, double dt) const`, with its Memory& before the limits if it has "
+          "one, or desired_speed(law, view, speed) (see Heeding)");
   }
 };
 

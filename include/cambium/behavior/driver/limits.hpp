@@ -15,9 +15,9 @@ namespace cambium {
 /// A car-following law: a described struct of parameters with
 /// - the six that every driver has: desired speed [m/s], time headway [s], minimum gap [m], maximum acceleration and
 ///   comfortable deceleration (above 0), and lowest acceleration (below 0) [m/s^2];
-/// - `double acceleration(double speed, double desired_speed, Constraint const& leader) const` [m/s^2], never higher
-///   than on a free road, where the gap is infinite; it is always above 0. `desired_speed` is the parameter, or less
-///   where a limit is lower: a law that follows it with a lag passes the sign too fast.
+/// - `double acceleration(double speed, double desired_speed, Constraint const& leader) const` [m/s^2]: never higher
+///   than on a free road. The leader's gap is above 0, and infinite on a free road. `desired_speed` is the parameter,
+///   or lower where a speed limit is; a law that responds to it with a lag passes the sign too fast.
 ///
 /// A law may further have
 /// - `static constexpr bool asks_acceleration = true`, if it wants to know a leader's acceleration;
@@ -79,6 +79,8 @@ template <CarFollowing Law>
 /// evenly and exactly to a point, while a law would keep a time headway to them.
 template <CarFollowing Law>
 class Limits {
+  static constexpr double infinite = std::numeric_limits<double>::infinity(), not_asked = infinite;
+
  public:
   using Response = decltype(at_speed(std::declval<Law const&>(), 0.0, 0.0));
 
@@ -123,11 +125,7 @@ class Limits {
     return nearer(motion, bound_);
   }
 
- private:
-  static constexpr double infinite = std::numeric_limits<double>::infinity(), not_asked = infinite;
-
- public:
-  Merging merging = Merging::counts;  ///< how those who merge into the lane count
+  Merging merging = Merging::counts;  ///< how road users count that merge into the lane
   double highest_speed = infinite;    ///< in the bends within the braking distance [m/s]
   bool is_at_light = false;           ///< it stands before a light that stops it
 

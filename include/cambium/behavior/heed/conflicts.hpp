@@ -92,7 +92,7 @@ struct Conflicts {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// Who merges into the own lane in a junction is followed when the right of way says so.
+  /// In junctions the right of way decides whether the driver follows those who merge into its lane.
   template <class View>
   [[nodiscard]] static Merging merging(View const&, Merging) {
     return Merging::by_rule;

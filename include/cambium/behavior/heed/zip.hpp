@@ -52,7 +52,7 @@ struct Zip {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// Before a merge, those in the other lane count only here.
+  /// Before a merge the law ignores the other lane: the driver opens a gap for those alone whom it lets in.
   template <class View>
   [[nodiscard]] Merging merging(View const& view, Merging counted) const {
     return next_merge(view) < infinite ? Merging::ignored : counted;

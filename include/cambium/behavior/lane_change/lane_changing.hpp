@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "cambium/behavior/lane_change/lane_change.hpp"
-#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/behavior/law/road_rules.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"

@@ -8,11 +8,11 @@
 
 #include "cambium/behavior/lane_change/lane_change.hpp"
 #include "cambium/behavior/lateral/keep_lane.hpp"
-#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/macros.hpp"
@@ -37,9 +37,8 @@ struct LaneChoice {
 
 /// Keeps its lane, and changes lanes where a rule such as `MobilRule` says so: a described struct with
 ///   `template <class Choice> CorridorId operator()(Choice const& choice) const`
-/// that returns the lane corridor to change to, or none, for a `LaneChoice`. It is not called during a change. The
-/// lateral part knows what the driver assumes of others, which gaps are safe, how the vehicle gets there and when it
-/// gives up.
+/// that returns the lane corridor to change to, or none, for a `LaneChoice`. It is not called during a change. This
+/// part knows what the driver assumes of others, which gaps are safe, how the vehicle gets there and when it gives up.
 ///
 ///    ======================================================  lane beyond
 ///      [rear]                . - - - - - - - ->   [front]    target lane: new follower, new leader

@@ -12,8 +12,8 @@
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/behavior/law/passing.hpp"
 #include "cambium/behavior/view.hpp"
-#include "cambium/core/macros.hpp"
 #include "cambium/core/described.hpp"
+#include "cambium/core/macros.hpp"
 
 namespace cambium {
 
