@@ -57,7 +57,7 @@ constexpr std::uint32_t runs = 200;
 /// The contender's runs alone, without jobs, locks and database.
 void bare_loop(benchmark::State& state) {
   auto const set = merging(runs);
-  auto const idm = cb::contender<Traffic>(cb::IdmClassic{.desired_speed = 22.0});
+  auto const idm = cb::contender<Traffic>(cb::IdmClassic{.law = {.desired_speed = 22.0}});
   yardstick::measure_duration(state, [&] {
     for (auto const& scenario : set.scenarios)
       benchmark::DoNotOptimize(idm.run(scenario, {set.time_step, set.time_limit}, false).result.steps);
@@ -80,7 +80,7 @@ void step_loop(benchmark::State& state) {
 
 void runner(benchmark::State& state, std::size_t threads) {
   auto const set = merging(runs);
-  auto const idm = cb::contender<Traffic>(cb::IdmClassic{.desired_speed = 22.0});
+  auto const idm = cb::contender<Traffic>(cb::IdmClassic{.law = {.desired_speed = 22.0}});
   remove_database();
   cb::ResultStore store(database());
   cb::BenchmarkOptions options;

@@ -7,17 +7,12 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/adaptive_cruise_control.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
-#include "cambium/behavior/following/idm_stochastic.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
-#include "cambium/behavior/lane_change/random_macro_actions.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/law/acc.hpp"
+#include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/wrap/idm_stochastic.hpp"
+#include "cambium/behavior/actions/random_macro_actions.hpp"
 #include "cambium/behavior/pedestrian/pedestrian.hpp"
-#include "cambium/behavior/safety/rss_conformant.hpp"
+#include "cambium/behavior/wrap/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -75,7 +70,7 @@ Sim<cb::ZipMerge> lane_drop(std::size_t agents) {
       world.add({.position = pose.position(),
                  .heading = pose.heading,
                  .speed = 10.0 + 4.0 * cb::uniform01(random),
-                 .behavior = cb::ZipMerge{.idm = {.desired_speed = 11.0 + 11.0 * cb::uniform01(random)}}});
+                 .behavior = cb::ZipMerge{.law = {.desired_speed = 11.0 + 11.0 * cb::uniform01(random)}}});
     }
   return world;
 }
@@ -163,25 +158,25 @@ void print_ratios(yardstick::Results const& results) {
 int main(int argc, char** argv) {
   for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}}) {
     register_steps<Sim<cb::IdmClassic>>("idm_classic", n, [](std::size_t agents) {
-      return highway<Sim<cb::IdmClassic>>(agents, [](double v) { return cb::IdmClassic{.desired_speed = v}; });
+      return highway<Sim<cb::IdmClassic>>(agents, [](double v) { return cb::IdmClassic{.law = {.desired_speed = v}}; });
     });
     register_steps<Sim<cb::Mobil>>("mobil", n, [](std::size_t agents) {
-      return highway<Sim<cb::Mobil>>(agents, [](double v) { return cb::Mobil{.idm = {.desired_speed = v}}; });
+      return highway<Sim<cb::Mobil>>(agents, [](double v) { return cb::Mobil{.law = {.desired_speed = v}}; });
     });
     using Acc = cb::AdaptiveCruiseControl;
     register_steps<Sim<Acc>>("adaptive_cruise_control", n, [](std::size_t agents) {
-      return highway<Sim<Acc>>(agents, [](double v) { return Acc{.idm = {.desired_speed = v}}; });
+      return highway<Sim<Acc>>(agents, [](double v) { return Acc{.law = {.desired_speed = v}}; });
     });
     register_steps<Sim<cb::IdmStochastic>>("idm_stochastic", n, [](std::size_t agents) {
       return highway<Sim<cb::IdmStochastic>>(agents, [](double) { return cb::IdmStochastic{}; });
     });
     using RuleBased = cb::LaneChangeRuleBased;
     register_steps<Sim<RuleBased>>("lane_change_rule_based", n, [](std::size_t agents) {
-      return highway<Sim<RuleBased>>(agents, [](double v) { return RuleBased{.idm = {.desired_speed = v}}; });
+      return highway<Sim<RuleBased>>(agents, [](double v) { return RuleBased{.law = {.desired_speed = v}}; });
     });
     using Rss = cb::RssConformant<cb::IdmClassic>;
     register_steps<Sim<Rss>>("rss_conformant", n, [](std::size_t agents) {
-      return highway<Sim<Rss>>(agents, [](double v) { return Rss{.nominal = {.desired_speed = v}}; });
+      return highway<Sim<Rss>>(agents, [](double v) { return Rss{.nominal = {.law = {.desired_speed = v}}}; });
     });
     register_steps<Sim<cb::RandomMacroActions>>("random_macro_actions", n, [](std::size_t agents) {
       return highway<Sim<cb::RandomMacroActions>>(agents, [](double) { return cb::RandomMacroActions{}; });
@@ -190,7 +185,7 @@ int main(int argc, char** argv) {
   for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}}) {
     using World = Sim<cb::IdmLaneTracking>;
     auto const make = [](std::size_t agents) {
-      return highway<World>(agents, [](double v) { return cb::IdmLaneTracking{.idm = {.desired_speed = v}}; });
+      return highway<World>(agents, [](double v) { return cb::IdmLaneTracking{.law = {.desired_speed = v}}; });
     };
     register_steps<World>("idm_lane_tracking", n, make, cb::AnyCollision{});
   }

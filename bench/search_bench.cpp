@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/opendrive.hpp"

@@ -52,17 +52,17 @@ World traffic() {
   cb::RandomStream random(42, 0, 0);
   for (std::uint32_t i = 0; i < 20; ++i) {
     double const speed = cb::Uniform{15.0, 22.0}(random);
-    cb::IdmClassic const idm{.desired_speed = speed, .time_headway = cb::Uniform{0.8, 2.0}(random)};
+    cb::IdmClassic const idm{.law = {.desired_speed = speed, .time_headway = cb::Uniform{0.8, 2.0}(random)}};
     World::Behavior behavior = idm;
     if (i == 8) {
       behavior = Planner{};
     } else if (i % 3 == 1) {
       cb::Mobil mobil;
-      mobil.idm.desired_speed = speed;
+      mobil.law.desired_speed = speed;
       behavior = mobil;
     } else if (i % 3 == 2) {
       cb::Intersection driver;
-      driver.idm.desired_speed = speed;
+      driver.law.desired_speed = speed;
       behavior = driver;
     }
     auto const& lane = world.map().lanes()[i % 3];

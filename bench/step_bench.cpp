@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"

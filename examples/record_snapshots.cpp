@@ -45,7 +45,7 @@ desk::World traffic(Settings const& settings, std::string const& map_text) {
   world.add({.position = {20, -5.25}, .speed = 12, .behavior = ego, .id = desk::ego});
   for (int i = 0; i < 8; ++i) {
     double const speed = cb::Uniform{5.0, 14.0}(random);
-    desk::World::Behavior driver = cb::IdmClassic{.desired_speed = speed};
+    desk::World::Behavior driver = cb::IdmClassic{.law = {.desired_speed = speed}};
     if (i % 3 == 1) driver = cb::Mobil{};
     if (i % 3 == 2) driver = cb::Intersection{};
     world.add({.position = {50.0 + 25.0 * i, i % 2 == 0 ? -5.25 : -1.75}, .speed = speed, .behavior = driver});

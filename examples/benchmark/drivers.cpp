@@ -17,10 +17,8 @@ Contender driver(std::string name, std::string parameters, std::uint64_t hash,
 double desired_speed(Spec const& ego) {
   return std::visit(
       [&](auto const& driver) {
-        if constexpr (requires { driver.idm.desired_speed; })
-          return driver.idm.desired_speed;
-        else if constexpr (requires { driver.desired_speed; })
-          return driver.desired_speed;
+        if constexpr (requires { driver.law.desired_speed; })
+          return driver.law.desired_speed;
         else
           return ego.speed;
       },
@@ -28,14 +26,15 @@ double desired_speed(Spec const& ego) {
 }
 
 Contender idm(examples::ParameterFile& file) {
-  return with_speed(file, cb::IdmClassic{}, "idm", [](auto& driver, double speed) { driver.desired_speed = speed; });
+  return with_speed(file, cb::IdmClassic{}, "idm",
+                    [](auto& driver, double speed) { driver.law.desired_speed = speed; });
 }
 Contender mobil(examples::ParameterFile& file) {
-  return with_speed(file, cb::Mobil{}, "mobil", [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
+  return with_speed(file, cb::Mobil{}, "mobil", [](auto& driver, double speed) { driver.law.desired_speed = speed; });
 }
 Contender intersection(examples::ParameterFile& file) {
   return with_speed(file, cb::Intersection{}, "intersection",
-                    [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
+                    [](auto& driver, double speed) { driver.law.desired_speed = speed; });
 }
 
 }  // namespace benchmark

@@ -4,6 +4,6 @@ CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<
 
 benchmark::Contender benchmark::policy_tree(examples::ParameterFile& file) {
   return with_speed(file, PolicyTree{}, "policy_tree", [](PolicyTree& planner, double speed) {
-    planner.actions.driver.idm.desired_speed = planner.actions.macro.idm.desired_speed = speed;
+    planner.actions.driver.law.desired_speed = planner.actions.macro.law.desired_speed = speed;
   });
 }

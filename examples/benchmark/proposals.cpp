@@ -4,5 +4,5 @@ CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<
 
 benchmark::Contender benchmark::proposals(examples::ParameterFile& file) {
   return with_speed(file, Proposals{}, "proposals",
-                    [](Proposals& planner, double speed) { planner.driver.driver.desired_speed = speed; });
+                    [](Proposals& planner, double speed) { planner.driver.law.desired_speed = speed; });
 }

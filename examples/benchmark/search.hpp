@@ -17,7 +17,7 @@ template <class Others>
                                    std::string const& name) {
   return with_speed(file, planner, name, [](Search<Others>& own, double speed) {
     own.reward.desired_speed = speed;
-    own.actions.driver.idm.desired_speed = own.actions.macro.idm.desired_speed = speed;
+    own.actions.driver.law.desired_speed = own.actions.macro.law.desired_speed = speed;
     own.actions.macro.highest_speed = 1.1 * speed;
   });
 }

@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/lane_change/driver_actions.hpp"
-#include "cambium/behavior/lane_change/idm_proposal.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/actions/driver_actions.hpp"
+#include "cambium/behavior/actions/idm_proposal.hpp"
 #include "cambium/behavior/pedestrian/pedestrian.hpp"
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/dynamics/single_track.hpp"

@@ -9,10 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/lane_change/driver_actions.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/actions/driver_actions.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -32,7 +30,7 @@ namespace cb = cambium;
 /// A follower with a defect, for the case study. It plans accelerations in steps of half a second, and in its next
 /// cycle goes on from the planned one, with limited jerk. Between two planned values it interpolates, wrongly if the
 /// cycle comes late: the share of the way from one to the other then counts from the begin of the plan.
-struct SmoothFollower : cb::IdmParameters {
+struct SmoothFollower : cb::Idm {
   static constexpr std::size_t knots = 5;
   static constexpr double spacing = 0.5;  // [s]
 

@@ -14,7 +14,7 @@ namespace examples {
 
 /// What `--parameters FILE` says: a JSON object with a member for each struct of parameters, by its name.
 ///
-///   {"format": 1, "mobil": {"politeness": 0.5, "idm": {"desired_speed": 30}}}
+///   {"format": 1, "mobil": {"law": {"desired_speed": 30}, "lateral": {"rule": {"politeness": 0.5}}}}
 ///
 /// What the file does not say stays as the program has it: its own value, or what it draws for each driver. All
 /// functions throw `cambium::ParameterError` that names file and key.

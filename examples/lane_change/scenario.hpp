@@ -7,8 +7,8 @@
 #include <string>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/actions/macro_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/evaluation/course_end.hpp"
@@ -62,12 +62,12 @@ struct Cell {
 };
 
 inline cb::IdmClassic driver(double time_headway) {
-  return {.desired_speed = 17.0,
-          .time_headway = time_headway,
-          .minimum_gap = 2.0,
-          .maximum_acceleration = 1.7,
-          .comfortable_deceleration = 1.67,
-          .lowest_acceleration = -15.0};
+  return {.law = {.desired_speed = 17.0,
+                  .time_headway = time_headway,
+                  .minimum_gap = 2.0,
+                  .maximum_acceleration = 1.7,
+                  .comfortable_deceleration = 1.67,
+                  .lowest_acceleration = -15.0}};
 }
 
 /// A brisk lane change. One of 4 s would leave no time to find a gap.
@@ -154,7 +154,7 @@ inline Sim::Behavior planner(Cell const& cell) {
 inline void fill_lane(cb::Scenario<Sim>& scenario, double begin, double end, double y, Cell const& cell,
                       cb::RandomStream& random) {
   auto other = driver(cell);
-  other.time_headway *= 1.0 - cell.variation;
+  other.law.time_headway *= 1.0 - cell.variation;
   cb::geometry::Shape const shape{.front = 3.85, .rear = 1.12, .left = 0.955, .right = 0.955};
   for (double s = begin + cb::Uniform{0.0, 10.0}(random); s <= end;
        s += shape.length() + cb::Uniform{20.0, 30.0}(random))

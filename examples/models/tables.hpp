@@ -4,6 +4,7 @@
 #include <string>
 #include <type_traits>
 
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/parameters.hpp"
 
 /// Models as Markdown, from the descriptions in their code.
@@ -51,6 +52,13 @@ template <class Value>
   return result;
 }
 
+/// Those that a driver heeds: "*speed_limit*, *bends* with lateral_acceleration 3 m/s^2".
+template <class... Heeds>
+[[nodiscard]] std::string part_text(cb::Heeding<Heeds...> const& heeds);
+/// `Bends` with another default.
+template <int percent>
+[[nodiscard]] std::string part_text(cb::BendsFor<percent> const& bends);
+
 /// "*idm*", or "*idm* with desired_speed 23 m/s": the struct and what differs from its own defaults.
 template <class Part>
 [[nodiscard]] std::string part_text(Part const& part) {
@@ -68,7 +76,18 @@ template <class Part>
   return "*" + std::string(cb::detail::struct_name<Part>()) + "*" + (others.empty() ? "" : " with " + others);
 }
 
-/// "`time_headway` 1.5 s, `rules` *road_rules*": all parameters with values and units.
+template <class... Heeds>
+std::string part_text(cb::Heeding<Heeds...> const& heeds) {
+  std::string text;
+  ((text += (text.empty() ? "" : ", ") + part_text(heeds.template get<Heeds>())), ...);
+  return text.empty() ? "none" : text;
+}
+template <int percent>
+std::string part_text(cb::BendsFor<percent> const& bends) {
+  return part_text(static_cast<cb::Bends const&>(bends));
+}
+
+/// "`time_headway` 1.5 s, `course` *lane_change_course*": all parameters with values and units.
 template <cb::Described M>
 [[nodiscard]] std::string values_of(M const& model) {
   std::string text;

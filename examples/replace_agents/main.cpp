@@ -17,9 +17,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/write_file.hpp"
@@ -79,24 +77,24 @@ std::vector<AgentSet> agent_sets(std::vector<std::uint64_t> const& ids) {
 
 /// Model `number` of `models` with the paper's parameters (Table II): 5 m/s, 1.7 m/s^2, 1 s, and the minimum distance.
 Sim::Behavior driver(std::size_t number, double minimum_distance, std::uint64_t iterations) {
-  cb::IdmParameters const idm{.desired_speed = 5.0,
-                              .time_headway = 1.0,
-                              .minimum_gap = minimum_distance,
-                              .maximum_acceleration = 1.7,
-                              .comfortable_deceleration = 1.7};
-  if (number == 0) return idm_classic(idm);
+  cb::Idm const idm{.desired_speed = 5.0,
+                    .time_headway = 1.0,
+                    .minimum_gap = minimum_distance,
+                    .maximum_acceleration = 1.7,
+                    .comfortable_deceleration = 1.7};
+  if (number == 0) return cb::IdmClassic{.law = idm};
   if (number == 1) {
     cb::Mobil mobil;
-    mobil.idm = idm;
+    mobil.law = idm;
     return mobil;
   }
   if (number == 3) {
     cb::ZipMerge zip;
-    zip.idm = idm;
+    zip.law = idm;
     return zip;
   }
-  Search search{.others = idm_classic(idm)};
-  search.actions.idm = idm;
+  Search search{.others = cb::IdmClassic{.law = idm}};
+  search.actions.law = idm;
   search.reward.desired_speed = idm.desired_speed;
   search.options.budget.iterations = iterations;
   return search;

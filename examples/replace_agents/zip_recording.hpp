@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -84,7 +84,7 @@ inline cb::RecordedTraffic record_zip(std::shared_ptr<cb::Map const> const& map,
     auto const road = cb::map::build_road_corridor(*map, cb::map::straight_route(*map, lane));
     auto const pose = road->corridors[road->main].center.pose(vehicle.s + cb::Uniform{-1.0, 1.0}(random));
     cb::ZipMerge driver;
-    driver.idm = {.desired_speed = cb::Uniform{4.6, 5.6}(random),
+    driver.law = {.desired_speed = cb::Uniform{4.6, 5.6}(random),
                   .time_headway = cb::Uniform{0.8, 1.2}(random),
                   .minimum_gap = cb::Uniform{1.6, 2.4}(random),
                   .maximum_acceleration = 1.7,

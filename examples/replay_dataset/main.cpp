@@ -14,9 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/write_file.hpp"

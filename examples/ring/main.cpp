@@ -36,7 +36,7 @@ struct Settings {
   examples::ParameterFile parameters{};
 };
 
-cb::IdmParameters driver_of(std::string const& name) {
+cb::Idm driver_of(std::string const& name) {
   std::string known;
   for (auto const& preset : cb::presets::all) {
     if (preset.name == name) return preset.parameters;
@@ -53,7 +53,7 @@ struct Row {
 };
 
 /// Measures at densities from light traffic to 95 % of what fits on the ring.
-std::vector<Row> sweep(cb::RingRoad const& road, cb::IdmParameters const& driver, double duration) {
+std::vector<Row> sweep(cb::RingRoad const& road, cb::Idm const& driver, double duration) {
   double const closest = driver.minimum_gap + cb::geometry::car().length();
   std::vector<Row> rows;
   for (double density = 0.005; density < 0.95 / closest; density += 0.005) {
@@ -73,7 +73,7 @@ DensityPoint point_of(double length, Row const& row) {
 }
 
 /// The theoretical curve, with finer steps than the measurements.
-std::vector<DensityPoint> theory(cb::IdmParameters const& driver) {
+std::vector<DensityPoint> theory(cb::Idm const& driver) {
   std::vector<DensityPoint> curve;
   double const length = 2000.0;
   for (int vehicles = 1;; ++vehicles) {
@@ -84,7 +84,7 @@ std::vector<DensityPoint> theory(cb::IdmParameters const& driver) {
 }
 
 /// Simulates the traffic at one density and records at most its first 15 minutes.
-void record_waves(cb::RingRoad const& road, cb::IdmParameters const& driver, Settings const& settings, Shown& shown,
+void record_waves(cb::RingRoad const& road, cb::Idm const& driver, Settings const& settings, Shown& shown,
                   cb::Recording& recording) {
   int const vehicles = static_cast<int>(std::lround(static_cast<double>(settings.density) * road.length / 1000.0));
   auto world = start_disturbed(road, driver, vehicles);

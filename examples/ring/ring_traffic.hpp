@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/law/linear_stability.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
@@ -30,7 +30,7 @@ struct Equilibrium {
   bool is_stable{};       ///< whether traffic is string stable, on a road of any length
 };
 
-inline Equilibrium equilibrium(cb::IdmParameters const& driver, double length, int vehicles) {
+inline Equilibrium equilibrium(cb::Idm const& driver, double length, int vehicles) {
   Equilibrium e;
   e.gap = length / vehicles - cb::geometry::car().length();
   e.speed = cb::idm_equilibrium_speed(driver, e.gap);
@@ -47,8 +47,7 @@ inline Equilibrium equilibrium(cb::IdmParameters const& driver, double length, i
 /// A ring of vehicles in equilibrium, each shifted ahead by `ahead(number)` [m] and faster by `faster(number)` [m/s].
 /// Vehicle i + 1 follows vehicle i.
 template <class Ahead, class Faster>
-Sim start(cb::RingRoad const& road, cb::IdmParameters const& driver, int vehicles, Ahead const& ahead,
-          Faster const& faster) {
+Sim start(cb::RingRoad const& road, cb::Idm const& driver, int vehicles, Ahead const& ahead, Faster const& faster) {
   Sim world(road.map);
   double const speed = equilibrium(driver, road.length, vehicles).speed;
   for (int i = 0; i < vehicles; ++i) {
@@ -56,14 +55,14 @@ Sim start(cb::RingRoad const& road, cb::IdmParameters const& driver, int vehicle
     world.add({.position = pose.position(),
                .heading = pose.heading,
                .speed = std::max(0.0, speed + faster(i)),
-               .behavior = cb::idm_classic(driver),
+               .behavior = cb::IdmClassic{.law = driver},
                .route = road.route});
   }
   return world;
 }
 
 /// A ring of vehicles in equilibrium, except that one is 1 m/s slower than the others.
-inline Sim start_disturbed(cb::RingRoad const& road, cb::IdmParameters const& driver, int vehicles) {
+inline Sim start_disturbed(cb::RingRoad const& road, cb::Idm const& driver, int vehicles) {
   return start(
       road, driver, vehicles, [](int) { return 0.0; }, [](int i) { return i == 0 ? -1.0 : 0.0; });
 }

@@ -51,7 +51,6 @@ constexpr char const* corpus_maps[] = {"4way_intersection",
                                        "threeway_intersection",
                                        "fabriksgatan",
                                        "simple_3way_intersection_lht",
-                                       "parking_demo",
                                        "DR_CHN_Merging_ZS_partial_v02",
                                        "DR_DEU_Merging_MT_v01_shifted",
                                        "highway_example_with_merge_and_split",
@@ -150,7 +149,7 @@ void print_findings(Settings const& settings, std::vector<Site> const& sites,
         if (shown[static_cast<std::size_t>(finding.flaw)]++ >= most) continue;
         auto const& mix = results[i][run].mix;
         std::printf("  %s: %s, run %zu (%s%s, dt %.2f s), seed %llu, step %llu, %.1f s\n    %s\n    %s\n",
-                    fs::path(sites[i].file).filename().c_str(), to_string(finding.flaw), run, mix.drivers.c_str(),
+                    fs::path(sites[i].file).filename().c_str(), to_string(finding.flaw), run, mix.name.c_str(),
                     mix.is_saturated ? ", saturated" : "", mix.dt, static_cast<unsigned long long>(settings.seed),
                     static_cast<unsigned long long>(finding.step), finding.time, finding.who.c_str(),
                     repeat_command(settings, sites[i].file, run, finding).c_str());
@@ -211,7 +210,7 @@ nlohmann::ordered_json json_of(Settings const& settings, std::vector<Row> const&
       for (auto const& finding : results[i][run].findings)
         json["findings"].push_back({{"map", row.map()},
                                     {"flaw", to_string(finding.flaw)},
-                                    {"scenario", results[i][run].mix.drivers},
+                                    {"scenario", results[i][run].mix.name},
                                     {"run", run},
                                     {"step", finding.step},
                                     {"time", finding.time},
@@ -233,7 +232,7 @@ void replay(Settings const& settings) {
   auto const run = static_cast<std::uint32_t>(*settings.replay);
   auto const result = drive(site, settings.seed, run, run_length, settings.parameters, &shot);
   shot.recording.title = "Soak on " + fs::path(site.file).filename().string() + ", run " + std::to_string(run);
-  std::string text = result.mix.drivers + ", dt " + std::to_string(result.mix.dt).substr(0, 4) + " s, seed " +
+  std::string text = result.mix.name + ", dt " + std::to_string(result.mix.dt).substr(0, 4) + " s, seed " +
                      std::to_string(settings.seed) + ", step " + std::to_string(shot.step);
   shot.recording.notes = {text};
   for (auto const& finding : result.findings)

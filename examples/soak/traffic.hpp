@@ -26,9 +26,8 @@ namespace soak {
 
 namespace cb = cambium;
 
-using Drivers = cb::BehaviorSet<cb::Intersection, cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking,
-                                cb::IdmStochastic, cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge, cb::Pedestrian>;
-using Sim = cb::World<Drivers, cb::InterpolateExecution, cb::SingleTrack>;
+using Driver = cb::UrbanDriver;
+using Sim = cb::World<cb::BehaviorSet<Driver, cb::Pedestrian>, cb::InterpolateExecution, cb::SingleTrack>;
 
 /// A map under test, and where its traffic comes from.
 struct Site {
@@ -109,8 +108,7 @@ struct Site {
 
 /// What the traffic of one run consists of.
 struct Mix {
-  std::string drivers;            ///< what they are called
-  std::vector<std::size_t> of{};  ///< indices of `Drivers`, drawn with equal probability
+  std::string name;
   double truck_share = 0.35, bus_share = 0.03, bicycle_share = 0.0;
   bool lights = false;
   bool is_saturated = true;
@@ -118,7 +116,7 @@ struct Mix {
   double dt = 0.2;
 };
 
-/// The traffic of run `run`: the map says which drivers know their way there.
+/// The traffic of run `run`.
 [[nodiscard]] inline Mix draw_mix(Site const& site, std::uint64_t seed, std::uint32_t run) {
   cb::RandomStream random(seed, run, 1);
   Mix mix;
@@ -126,37 +124,14 @@ struct Mix {
   mix.is_saturated = run % 3 != 2;
   double const share = cb::uniform01(random);
   if (!mix.is_saturated) mix.per_hour = site.has_conflicts ? 60.0 + 440.0 * share : 200.0 + 1400.0 * share;
-  if (site.has_conflicts) {
-    mix.lights = site.has_lights() && run % 2 == 0;
-    mix.bicycle_share = 0.07;
-    mix.drivers = mix.lights ? "junction drivers, lights on" : "junction drivers";
-    mix.of = {Drivers::index<cb::Intersection>};
-    return mix;
-  }
-  struct Named {
-    char const* name;
-    std::size_t of;
-  };
-  std::vector<Named> known = {{"IDM", Drivers::index<cb::IdmClassic>},
-                              {"cruise control", Drivers::index<cb::AdaptiveCruiseControl>},
-                              {"lane tracking", Drivers::index<cb::IdmLaneTracking>},
-                              {"stochastic IDM", Drivers::index<cb::IdmStochastic>},
-                              {"MOBIL", Drivers::index<cb::Mobil>},
-                              {"rule-based lane changes", Drivers::index<cb::LaneChangeRuleBased>}};
-  if (site.has_merges) known.push_back({"zip merge", Drivers::index<cb::ZipMerge>});
-  auto const kind = run % (known.size() + 1);
-  if (kind < known.size()) {
-    mix.drivers = known[kind].name;
-    mix.of = {known[kind].of};
-  } else {
-    mix.drivers = "all drivers";
-    for (auto const& one : known) mix.of.push_back(one.of);
-  }
+  mix.lights = site.has_lights() && run % 2 == 0;
+  if (site.has_conflicts) mix.bicycle_share = 0.07;
+  mix.name = mix.lights ? "lights on" : site.has_conflicts ? "junctions" : "roads";
   return mix;
 }
 
 /// A driver's car following: a little different from the others.
-[[nodiscard]] inline cb::IdmParameters draw_idm(double limit, bool is_heavy, cb::RandomStream& random) {
+[[nodiscard]] inline cb::Idm draw_idm(double limit, bool is_heavy, cb::RandomStream& random) {
   auto const between = [&](double low, double high) { return cb::Uniform{low, high}(random); };
   double const free = (std::isfinite(limit) ? limit : 50.0 / 3.6) * between(0.85, 1.1);
   return {.desired_speed = is_heavy ? std::min(free, between(22.0, 25.0)) : free,
@@ -165,75 +140,29 @@ struct Mix {
           .maximum_acceleration = is_heavy ? 0.8 : between(1.2, 2.0)};
 }
 
-/// Rules of the road for drivers who do not have them by default.
-[[nodiscard]] inline cb::RoadRules lawful(cb::RoadRules rules = {}) {
-  rules.obey_speed_limits = rules.slow_for_bends = rules.obey_signals = true;
-  return rules;
+/// A driver with this car following. On motorways it keeps to the outer lanes.
+[[nodiscard]] inline Driver make_driver(cb::Idm const& idm, bool is_heavy, bool is_motorway, cb::RandomStream& random) {
+  Driver driver{.law = idm};
+  driver.lateral.others = cb::presets::kesting_2010_car();
+  driver.lateral.trucks = cb::presets::kesting_2010_truck();
+  if (!is_motorway) return driver;
+  auto& rule = driver.lateral.rule;
+  rule.keep_right = cb::uniform01(random) < 0.5;
+  rule.bias = is_heavy ? 0.6 : 0.3;
+  rule.route_horizon = 800.0;  // exits are announced early
+  rule.route_bias = 4.0;
+  return driver;
 }
 
-[[nodiscard]] inline cb::LaneChanging draw_changing() {
-  cb::LaneChanging changing;
-  changing.others = cb::presets::kesting_2010_car();
-  changing.trucks = cb::presets::kesting_2010_truck();
-  return changing;
-}
-
-/// Driver number `kind` of `Drivers` with these parameters.
-[[nodiscard]] inline Sim::Behavior make_driver(std::size_t kind, cb::IdmParameters const& idm, bool is_heavy,
-                                               cb::RandomStream& random) {
-  auto const follower = [&]<class Driver>(Driver driver) -> Sim::Behavior {
-    driver.idm = idm;
-    driver.rules = lawful(driver.rules);
-    return driver;
-  };
-  switch (kind) {
-    case Drivers::index<cb::Intersection>:
-      return cb::Intersection{.idm = idm};
-    case Drivers::index<cb::AdaptiveCruiseControl>:
-      return follower(cb::AdaptiveCruiseControl{});
-    case Drivers::index<cb::IdmLaneTracking>:
-      return follower(cb::IdmLaneTracking{});
-    case Drivers::index<cb::ZipMerge>:
-      return follower(cb::ZipMerge{});
-    case Drivers::index<cb::IdmStochastic>: {
-      cb::IdmStochastic driver;
-      driver.desired_speed = {0.95 * idm.desired_speed, 1.05 * idm.desired_speed};
-      driver.yielding.enabled = true;
-      driver.rules = lawful();
-      return driver;
-    }
-    case Drivers::index<cb::Mobil>: {
-      cb::Mobil driver{.idm = idm, .changing = draw_changing()};
-      driver.rules = lawful(driver.rules);
-      driver.keep_right = cb::uniform01(random) < 0.5;
-      driver.bias = is_heavy ? 0.6 : 0.3;
-      driver.route_horizon = 800.0;  // exits are announced early
-      driver.route_bias = 4.0;
-      return driver;
-    }
-    case Drivers::index<cb::LaneChangeRuleBased>: {
-      cb::LaneChangeRuleBased driver{.idm = idm, .changing = draw_changing()};
-      driver.route_horizon = 800.0;
-      driver.rules = lawful(driver.rules);
-      return driver;
-    }
-    default: {
-      cb::IdmClassic driver;
-      driver.desired_speed = idm.desired_speed;
-      driver.time_headway = idm.time_headway;
-      driver.minimum_gap = idm.minimum_gap;
-      driver.maximum_acceleration = idm.maximum_acceleration;
-      driver.rules = lawful();
-      return driver;
-    }
-  }
+[[nodiscard]] inline cb::Pedestrian draw_walker(cb::RandomStream& random) {
+  cb::Pedestrian walker;
+  walker.social.desired_speed = cb::Uniform{1.0, 1.6}(random);
+  return walker;
 }
 
 /// Someone who walks along a path.
 [[nodiscard]] inline Sim::AgentSpec draw_pedestrian(cb::RandomStream& random) {
-  cb::Pedestrian walker;
-  walker.social.desired_speed = cb::Uniform{1.0, 1.6}(random);
-  return {.speed = 1.0, .shape = cb::geometry::pedestrian(), .behavior = walker};
+  return {.speed = 1.0, .shape = cb::geometry::pedestrian(), .behavior = draw_walker(random)};
 }
 
 /// The next vehicle of a source. Trucks and buses only where they fit.
@@ -252,10 +181,9 @@ struct Mix {
   bool const is_heavy = shape == truck() || shape == bus(), cycles = shape == bicycle();
   double const limit = site.map->lane(source.lane).speed_limit_at(0.0);
   auto const idm = cycles ? cb::presets::cyclist() : draw_idm(limit, is_heavy, random);
-  auto const kind = mix.of[cb::uniform_index(random, static_cast<std::uint32_t>(mix.of.size()))];
   return {.speed = idm.desired_speed,
           .shape = shape,
-          .behavior = make_driver(kind, idm, is_heavy, random),
+          .behavior = make_driver(idm, is_heavy, !site.has_conflicts, random),
           .route = route,
           .dynamics = cycles ? cb::presets::bicycle_dynamics() : cb::SingleTrack{}};
 }
@@ -268,14 +196,13 @@ inline void set_parameters(Sim::AgentSpec& spec, examples::ParameterFile const& 
 /// Checks the file's parameters; prints them if that is asked for, and returns whether.
 [[nodiscard]] inline bool take_parameters(examples::ParameterFile& file) {
   cb::RandomStream random(1, 0, 0);
-  for (int draw = 0; draw < 50; ++draw)
-    for (std::size_t kind = 0; kind < Drivers::Any::size; ++kind) {
-      bool const is_heavy = draw % 2 == 0;
-      auto spec = draw_pedestrian(random);
-      if (kind != Drivers::index<cb::Pedestrian>)
-        spec.behavior = make_driver(kind, draw_idm(draw % 3 == 0 ? 14.0 : 30.0, is_heavy, random), is_heavy, random);
-      std::visit([&](auto& driver) { file.take(driver); }, spec.behavior);
-    }
+  for (int draw = 0; draw < 50; ++draw) {
+    bool const is_heavy = draw % 2 == 0, is_motorway = draw % 3 != 0;
+    auto driver = make_driver(draw_idm(is_motorway ? 30.0 : 14.0, is_heavy, random), is_heavy, is_motorway, random);
+    auto walker = draw_walker(random);
+    file.take(driver);
+    file.take(walker);
+  }
   return file.finish();
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/execution/interpolate.hpp"
@@ -25,15 +25,7 @@ using Simulation =
     cambium::World<cambium::BehaviorSet<cambium::ZipMerge>, cambium::InterpolateExecution, cambium::SingleTrack>;
 
 /// A zip merge driver with the parameters of `driver`.
-[[nodiscard]] inline cambium::ZipMerge zip(cambium::IdmClassic const& driver) {
-  cambium::ZipMerge result;
-  result.idm = {.desired_speed = driver.desired_speed,
-                .time_headway = driver.time_headway,
-                .minimum_gap = driver.minimum_gap,
-                .maximum_acceleration = driver.maximum_acceleration,
-                .comfortable_deceleration = driver.comfortable_deceleration};
-  return result;
-}
+[[nodiscard]] inline cambium::ZipMerge zip(cambium::IdmClassic const& driver) { return {.law = driver.law}; }
 
 /// Counts pairs of vehicles that reach the merge in a row while other vehicles are still coming in the other lane.
 class Watch {

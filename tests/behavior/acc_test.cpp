@@ -1,5 +1,5 @@
 // Laws of the car-following models, as properties over many samples.
-#include "cambium/behavior/following/adaptive_cruise_control.hpp"
+#include "cambium/behavior/law/acc.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@ using namespace lane_traffic;
 
 namespace {
 
-cb::IdmParameters any_driver(cb::RandomStream& random) {
+cb::Idm any_driver(cb::RandomStream& random) {
   return {.desired_speed = between(15, 40, random),
           .time_headway = between(0.8, 2.2, random),
           .minimum_gap = between(1, 4, random),
@@ -21,7 +21,7 @@ cb::IdmParameters any_driver(cb::RandomStream& random) {
           .lowest_acceleration = -8.0};
 }
 
-cb::LinearFollowing linear(cb::IdmParameters const& p, double speed) {
+cb::LinearFollowing linear(cb::Idm const& p, double speed) {
   auto const law = [&p](double v, double gap, double leader) { return cb::idm_acceleration(p, v, gap, leader); };
   return cb::linear_following(law, speed, cb::idm_equilibrium_gap(p, speed));
 }
@@ -34,7 +34,7 @@ double amplification(cb::LinearFollowing const& f, double w) {
 }
 
 /// The same for the last vehicle of a platoon, by simulation.
-double simulated_amplification(cb::IdmParameters const& p, double speed, double w, int followers) {
+double simulated_amplification(cb::Idm const& p, double speed, double w, int followers) {
   double const dt = 0.05, period = 6.2831853 / w, amplitude = 0.01;
   auto const n = static_cast<std::size_t>(followers);
   std::vector<double> x(n), v(n, speed);
@@ -96,7 +96,7 @@ TEST_CASE("followers settle at the closed-form gap") {
     double const leader = between(0.2, 0.85, random) * p.desired_speed;
     double gap = between(20, 120, random), acc_gap = gap, v = between(0, 1, random) * p.desired_speed, acc_v = v;
     double const coolness = cb::uniform01(random);
-    cb::AccLaw const law(p, coolness, 0.0);
+    cb::AccLaw const law(p, coolness, 0.0, p.desired_speed);
     for (int i = 0; i < 3000; ++i) {
       auto const m = cb::idm_motion(p, v, gap, leader, 0.2, 1e-6);
       gap += 0.2 * leader - m.distance;
@@ -119,11 +119,12 @@ TEST_CASE("the ACC model lies between IDM and the heuristic, closer to the heuri
     auto const p = any_driver(random);
     double const v = between(0, 40, random);
     cb::Constraint const leader{between(0.5, 100, random), between(0, 40, random), between(-8, 3, random)};
-    double const idm = cb::AccLaw(p, 0.0, v)(leader), cah = cb::cah_acceleration(v, leader, p.maximum_acceleration);
+    double const idm = cb::AccLaw(p, 0.0, v, p.desired_speed)(leader),
+                 cah = cb::cah_acceleration(v, leader, p.maximum_acceleration);
     double const low = std::max(p.lowest_acceleration, std::min(idm, cah)), high = std::max(idm, cah);
     double previous = idm;
     for (double const coolness : {0.3, 0.6, 0.99, 1.0}) {
-      double const a = cb::AccLaw(p, coolness, v)(leader);
+      double const a = cb::AccLaw(p, coolness, v, p.desired_speed)(leader);
       REQUIRE(std::isfinite(a));
       CHECK(a >= low - 1e-9);
       CHECK(a <= high + 1e-9);
@@ -139,7 +140,8 @@ TEST_CASE("the ACC model lies between IDM and the heuristic, closer to the heuri
 TEST_CASE("behind an equally fast vehicle that cuts in, IDM brakes hard and the ACC model calmly") {
   auto const p = cb::presets::kesting_2010_car();
   cb::Constraint const leader{10.0, 25.0, 0.0};
-  double const idm = cb::AccLaw(p, 0.0, 25.0)(leader), acc = cb::AccLaw(p, 0.99, 25.0)(leader);
+  double const idm = cb::AccLaw(p, 0.0, 25.0, p.desired_speed)(leader),
+               acc = cb::AccLaw(p, 0.99, 25.0, p.desired_speed)(leader);
   MESSAGE("IDM " << idm << " m/s^2, ACC " << acc << " m/s^2");
   CHECK(idm < -5.0);
   CHECK(acc > -2.5);
@@ -158,7 +160,7 @@ TEST_CASE("from safe gaps the ACC model does not collide with a leader that brak
     for (int i = 0; i * dt < 150.0; ++i) {
       cb::Constraint const seen{gap, leader, i > 0 && leader > 0.0 ? braking : 0.0};
       double const next = std::max(0.0, leader + braking * dt);
-      cb::AccLaw const law(p, coolness, 0.0);
+      cb::AccLaw const law(p, coolness, 0.0, p.desired_speed);
       auto const m = cb::follow_motion(law, v, seen, dt);
       hardest = std::min(hardest, (m.speed - v) / dt);
       gap += 0.5 * (leader + next) * dt - m.distance;
@@ -178,7 +180,7 @@ TEST_CASE("an ACC driver brakes for what comes towards it, whether that accelera
   for (int i = 0; i < 10'000; ++i) {
     auto const driver = any_driver(random);
     double const speed = between(0.5, 30, random), gap = between(0.5, 60, random);
-    cb::AccLaw const law(driver, 0.99, speed);
+    cb::AccLaw const law(driver, 0.99, speed, driver.desired_speed);
     double const standing = law({gap, 0.0, 0.0});
     double const oncoming = law({gap, between(-20, -0.1, random), between(-5, 5, random)});
     CAPTURE(speed);
@@ -188,13 +190,13 @@ TEST_CASE("an ACC driver brakes for what comes towards it, whether that accelera
 }
 
 TEST_CASE("extreme inputs give finite accelerations within the bounds") {
-  cb::IdmParameters const p;
+  cb::Idm const p;
   for (double const v : {0.0, 1e-9, 30.0, 1000.0})
     for (double const gap : {-10.0, 0.0, 1e-12, 1.0, 1e9})
       for (double const leader : {0.0, 1e-9, 1000.0})
         for (double const a : {-50.0, 0.0, 1e-9, 50.0})
           for (double const coolness : {0.0, 0.5, 1.0}) {
-            double const result = cb::AccLaw(p, coolness, v)({gap, leader, a});
+            double const result = cb::AccLaw(p, coolness, v, p.desired_speed)({gap, leader, a});
             CHECK(result >= p.lowest_acceleration);
             CHECK(result <= p.highest_acceleration);
           }

@@ -157,8 +157,8 @@ double roll_out(std::string const& file, std::vector<cb::map::LaneCorridor> cons
   return worst;
 }
 
-cb::IdmParameters bark_idm(double desired_speed) {
-  cb::IdmParameters p{.desired_speed = desired_speed};
+cb::Idm bark_idm(double desired_speed) {
+  cb::Idm p{.desired_speed = desired_speed};
   p.comfortable_deceleration = 1.67f;  // BARK keeps it as a float
   return p;
 }
@@ -168,7 +168,7 @@ bark::Driver idm_driver(int agent) {
   return {bark_idm(desired[agent - 1])};
 }
 bark::Driver acc_driver(int agent) {
-  return {bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8), cb::AdaptiveCruiseControl{}.coolness};
+  return {bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8), cb::AdaptiveCruiseControl{}.law.coolness};
 }
 bark::LaneTracking straight_tracking(int agent) { return {bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 10)}; }
 
@@ -269,7 +269,7 @@ TEST_CASE(
 }
 
 TEST_CASE("unlike in BARK, a standing vehicle does not creep back and a faster leader does not cause braking") {
-  cb::IdmParameters const p;
+  cb::Idm const p;
   World world(straight_road(1, 1000.0));
   auto const id = world.add({.position = {100, -1.75}, .behavior = cb::IdmClassic{}});
   world.add({.position = {101 + cb::geometry::car().length(), -1.75}, .behavior = cb::IdmClassic{}});

@@ -1,4 +1,4 @@
-#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-// Drivers composed of a law, a lateral part and heeds drive as those that are written as a whole, to the last bit.
+// Drivers composed of a law, a lateral part and heeds.
 #include "cambium/behavior/drivers.hpp"
 
 #include <doctest/doctest.h>
@@ -18,6 +18,7 @@
 #include "cambium/world/world.hpp"
 
 #include "../support/maps.hpp"
+#include "gipps.hpp"
 
 using namespace cambium;
 
@@ -59,103 +60,40 @@ void fill_in_queues(World& world, Make const& behavior) {
     }
 }
 
-template <class Whole, class Composed>
-void check_equal(Whole const& whole, Composed const& composed, std::initializer_list<double> steps = {0.1, 0.2, 0.5}) {
-  using Sim = World<BehaviorSet<Whole, Composed>, InterpolateExecution, SingleTrack>;
-  for (auto const* const name : {"merging.xodr", "roundabout.xodr", "intersection_4way.xodr", "highway_exit.xodr"})
-    for (double const dt : steps) {
-      CAPTURE(name);
-      CAPTURE(dt);
-      auto const map = support::own_map(name);
-      Sim one(map, {.seed = 7}), other(map, {.seed = 7});
-      bool const in_queues = dt == 0.2;
-      if (in_queues) fill_in_queues(one, [&] { return whole; });
-      if (in_queues) fill_in_queues(other, [&] { return composed; });
-      if (!in_queues) fill(one, whole, 3);
-      if (!in_queues) fill(other, composed, 3);
-      for (int step = 0; step < (in_queues ? 200 : 60); ++step) {
-        (void)one.step(dt);
-        (void)other.step(dt);
-        for (std::size_t i = 0; i < one.frame().agents.size(); ++i) {
-          CAPTURE(step);
-          CAPTURE(i);
-          auto const &a = one.frame().agents[Slot{static_cast<std::uint32_t>(i)}],
-                     &b = other.frame().agents[Slot{static_cast<std::uint32_t>(i)}];
-          REQUIRE(a.status == b.status);
-          REQUIRE(a.state == b.state);
-          REQUIRE(a.action == b.action);
-        }
-      }
-    }
-}
-
-/// Gipps 1981, "A behavioural car-following model for computer simulation", eq. 11, as a law of a user's own.
-struct Gipps {
-  double desired_speed = 15.0, time_headway = 1.0, minimum_gap = 2.0;
-  double maximum_acceleration = 1.7, comfortable_deceleration = 3.0, lowest_acceleration = -8.0;
-
-  static constexpr char const* name = "gipps";
-  static constexpr auto parameters() {
-    using P = Gipps;
-    return parameter_list(parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "speed on a free road"),
-                          parameter("time_headway", &P::time_headway, "s", Range{0.1, 10}, "reaction time"));
-  }
-  [[nodiscard]] double acceleration(double v, double desired, Constraint const& leader) const {
-    double const t = time_headway, b = comfortable_deceleration, u = v / desired;
-    double const free = 2.5 * maximum_acceleration * (1.0 - u) * std::sqrt(0.025 + u);
-    if (std::isinf(leader.gap)) return free;
-    double const root = b * (2.0 * (leader.gap - minimum_gap) - v * t) + leader.speed * leader.speed + b * b * t * t;
-    return std::min(free, (-b * t + std::sqrt(std::max(0.0, root)) - v) / t);
-  }
-};
-static_assert(CarFollowing<Gipps>);
-static_assert(BehaviorModel<UrbanDriver>);
-
 }  // namespace
 
-TEST_CASE("a composed driver that follows its lane by IDM is IdmClassic") {
-  using Composed = Driver<Idm, KeepLane, Pedestrians>;
-  check_equal(IdmClassic{}, Composed{});
-  check_equal(
-      IdmClassic{.desired_speed = 9.0, .rules = {.merging = Merging::gives_way, .keep_to_side = true}},
-      Composed{.law = {.desired_speed = 9.0}, .lateral = {.merging = Merging::gives_way, .keep_to_side = true}});
+TEST_CASE("drivers have the names of the files, or those of their parts") {
+  CHECK(std::string(IdmClassic::name) == "idm_classic");
+  CHECK(std::string(UrbanDriver::name) == "urban_driver");
+  CHECK(std::string(Driver<Gipps, KeepLane, Signals>::name) == "gipps_keep_lane_signals");
+  CHECK(std::string(Mobil::Also<Signals, SpeedLimit>::name) ==
+        "idm_change_lanes_bends_pedestrians_signals_speed_limit");
 }
 
-TEST_CASE("a composed driver heeds the lane's end, limits, bends and signals as the rules of IdmClassic say") {
-  using Composed = Driver<Idm, KeepLane, LaneEnd, SpeedLimit, Bends, Signals, Pedestrians>;
-  check_equal(IdmClassic{.rules = {.lane_end = RoadRules::LaneEnd::before_destination,
-                                   .obey_speed_limits = true,
-                                   .slow_for_bends = true,
-                                   .obey_signals = true}},
-              Composed{});
+TEST_CASE("a heed is found by its type or a base of it, read, and replaced in a copy") {
+  auto const driver = Mobil{}.with(Bends{.lateral_acceleration = 2.0});
+  CHECK(driver.heed<Bends>().lateral_acceleration == 2.0);
+  CHECK(Mobil{}.heed<Bends>().lateral_acceleration == 3.0);
+  CHECK(IdmLaneTracking{}.heed<Bends>().lateral_acceleration == 3.4);
+  static_assert(!Heeding<Bends>::contains<Signals>);
+  static_assert(sizeof(Driver<Idm, KeepLane>) == sizeof(Idm) + sizeof(KeepLane));
+  static_assert(sizeof(IdmClassic::Memory) == sizeof(KeepLane::Memory));
 }
 
-TEST_CASE("a composed driver that changes lanes by MOBIL is Mobil") {
-  using Composed = Driver<Idm, ChangeLanes<MobilRule<>>, Bends, Pedestrians>;
-  check_equal(Mobil{}, Composed{}.with(Bends{.lateral_acceleration = 3.0}));
-}
-
-TEST_CASE(
-    "composed drivers by the ACC model and the rule of free space are AdaptiveCruiseControl and LaneChangeRuleBased") {
-  check_equal(AdaptiveCruiseControl{}, Driver<Acc, KeepLane, Pedestrians>{});
-  using Composed = Driver<Idm, ChangeLanes<FreeSpaceRule>, Bends, Pedestrians>;
-  check_equal(LaneChangeRuleBased{}, Composed{}.with(Bends{.lateral_acceleration = 3.0}));
-}
-
-TEST_CASE("a composed driver that zips is ZipMerge where all drive in the middle of their lanes") {
-  // Beside it, ZipMerge returns to the middle, while KeepLane keeps its offset.
-  check_equal(ZipMerge{}, Driver<Idm, KeepLane, Pedestrians, Zip>{}, {0.2});
-}
-
-TEST_CASE("a composed driver that steers to its line is IdmLaneTracking, in steps of one part") {
-  using Composed = Driver<Idm, TrackLine, Bends, Pedestrians>;
-  check_equal(IdmLaneTracking{}, Composed{}.with(Bends{.lateral_acceleration = 3.4}), {0.1, 0.2});
-}
-
-TEST_CASE("a composed driver that heeds conflicts is Intersection") {
-  using Composed = Driver<Idm, KeepLane, SpeedLimit, Bends, Signals, Pedestrians, Conflicts>;
-  check_equal(Intersection{}, Composed{});
-  check_equal(Intersection{.idm = {.desired_speed = 9.0}}, Composed{.law = {.desired_speed = 9.0}});
+TEST_CASE("the strictest constraint is found whenever the law's response is asked for") {
+  Idm const law;
+  auto const response = law.at(10.0, law.desired_speed);
+  Limits limits(law, 10.0, law.desired_speed);
+  CHECK_FALSE(limits.is_constrained());
+  CHECK(limits.acceleration() == response.free());
+  limits.heed({20.0, 0.0});
+  CHECK(limits.acceleration() == response(20.0, 0.0));
+  limits.heed({100.0, 9.0});
+  CHECK(limits.constraint().gap == 20.0);
+  CHECK(limits.acceleration() == response(20.0, 0.0));
+  limits.heed({15.0, 0.0});
+  CHECK(limits.constraint().gap == 15.0);
+  CHECK(limits.acceleration() == response(15.0, 0.0));
 }
 
 TEST_CASE_TEMPLATE("drivers for town change lanes and give way, whatever their law", Law, Idm, Gipps) {

@@ -42,12 +42,12 @@ struct Braking {
 using Human = cb::HumanDriver<cb::IdmClassic>;
 using Platoon = Traffic<Human, Swinging, Braking, cb::IdmClassic>;
 
-cb::IdmParameters const driver = cb::presets::kesting_2010_car();
+cb::Idm const driver = cb::presets::kesting_2010_car();
 constexpr double speed = 20.0;
 
 /// A human without errors.
 Human precise(double reaction_time, bool anticipates) {
-  return {.nominal = cb::idm_classic(driver),
+  return {.nominal = cb::IdmClassic{.law = driver},
           .reaction_time = reaction_time,
           .gap_error = 0.0,
           .rate_error = 0.0,
@@ -126,7 +126,7 @@ TEST_CASE_TEMPLATE("a human without imperfections drives as the nominal behaviou
   Twins<Nominal> nominal(straight_road(3, 1000.0), {.seed = 3});
   for (int i = 0; i < 12; ++i) {
     Nominal behavior{};
-    if constexpr (requires { behavior.idm; }) behavior.idm.desired_speed = 10.0 + i;
+    if constexpr (requires { behavior.law; }) behavior.law.desired_speed = 10.0 + i;
     nominal.add({.position = {15.0 * i + 5.0, i % 3 == 0   ? -5.25
                                               : i % 3 == 1 ? -1.75
                                                            : -8.75},
@@ -153,7 +153,7 @@ TEST_CASE("a human without imperfections does so among cyclists, and where it ob
   cb::ObservationNoise const noise{.along = 0.3, .across = 0.1, .speed = 0.2};
   auto const drive = [&](bool human) {
     Noisy world(straight_road(1, 1000.0), {.seed = 3});
-    cb::IdmClassic const exact{.desired_speed = 12.0};
+    cb::IdmClassic const exact{.law = {.desired_speed = 12.0}};
     Noisy::Behaviors::Any behavior = exact;
     if (human) behavior = Human{.nominal = exact, .reaction_time = 0.0, .gap_error = 0.0, .rate_error = 0.0};
     for (int i = 0; i < 8; ++i) {
@@ -161,8 +161,8 @@ TEST_CASE("a human without imperfections does so among cyclists, and where it ob
       world.add({.position = {20.0 + 25.0 * i, cycles ? -3.0 : -1.75},
                  .speed = cycles ? 5.0 : 10.0,
                  .shape = cycles ? cb::geometry::bicycle() : cb::geometry::car(),
-                 .behavior = cycles ? Noisy::Behaviors::Any(
-                                          cb::IdmClassic{.desired_speed = 5.0, .rules = cb::presets::cyclist_rules()})
+                 .behavior = cycles ? Noisy::Behaviors::Any(cb::IdmClassic{.law = {.desired_speed = 5.0},
+                                                                           .lateral = cb::presets::cyclist_lane()})
                                     : behavior,
                  .observer = {.others = noise}});
     }
@@ -180,7 +180,7 @@ TEST_CASE("a decision takes effect one reaction time later, however long the ste
   };
   for (auto const [reaction_time, dt] : {Case{0.8, 0.1}, Case{1.0, 0.1}, Case{2.0, 0.5}, Case{1.5, 0.02}}) {
     CAPTURE(reaction_time);
-    double const at_once = braking_time(platoon(Braking{}, cb::idm_classic(driver), 1), dt);
+    double const at_once = braking_time(platoon(Braking{}, cb::IdmClassic{.law = driver}, 1), dt);
     double const later = braking_time(platoon(Braking{}, precise(reaction_time, false), 1), dt);
     CHECK(at_once > 50.0);
     CHECK(at_once < 51.5);
@@ -232,7 +232,7 @@ TEST_CASE("reaction time and anticipation do not change the gap that a driver ke
 }
 
 TEST_CASE("errors are normal, last, and show in the gaps that drivers keep") {
-  Human const erring{.nominal = cb::idm_classic(driver),
+  Human const erring{.nominal = cb::IdmClassic{.law = driver},
                      .reaction_time = 0.6,
                      .gap_error = 0.1,
                      .rate_error = 0.0,
@@ -254,7 +254,7 @@ TEST_CASE("errors are normal, last, and show in the gaps that drivers keep") {
   CHECK(std::abs(sum / n) < 0.15);
   CHECK(squares / n == doctest::Approx(1.0).epsilon(0.2));
   // One persistence time later, e^-1 of an error is left on average.
-  Human const usual{.nominal = cb::idm_classic(driver), .persistence = 20.0};
+  Human const usual{.nominal = cb::IdmClassic{.law = driver}, .persistence = 20.0};
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     auto world = platoon(Swinging{.amplitude = 0.0}, usual, 2, seed);
     auto const errors = [&] {

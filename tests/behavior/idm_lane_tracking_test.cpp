@@ -1,4 +1,4 @@
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/drivers.hpp"
 
 #include <doctest/doctest.h>
 
@@ -75,7 +75,7 @@ TEST_CASE_TEMPLATE("any vehicle model is kept on its lane", Model, cb::SingleTra
 
 TEST_CASE("the vehicle stays calm at speeds at which a held Stanley law would oscillate") {
   for (double const dt : {0.1, 0.2}) {
-    IdmLaneTracking const driver{.idm = {.desired_speed = 60.0}, .longest_substep = dt};
+    IdmLaneTracking const driver{.law = {.desired_speed = 60.0}, .lateral = {.longest_substep = dt}};
     auto world = beside_lane<cb::SingleTrack>(0.0, 0.5, 0.0, 50.0, {}, driver);
     double previous = 0.6;
     for (int i = 0; i < 15 && world.frame().agents[0].status == cb::AgentStatus::driving; ++i) {
@@ -105,7 +105,7 @@ TEST_CASE("before a bend it brakes comfortably and enters as fast as the tyres a
       INFO("radius ", radius, ", dt ", dt);
       CHECK(fastest < allowed);
       CHECK(entered > 0.7 * allowed);
-      CHECK(hardest > -1.3 * cb::IdmParameters{}.comfortable_deceleration);
+      CHECK(hardest > -1.3 * cb::Idm{}.comfortable_deceleration);
     }
 }
 
@@ -115,11 +115,11 @@ TEST_CASE("steering stays within the vehicle's limit and the driver's lateral ac
   for (int i = 0; i < 20000; ++i) {
     double const v = between(0, 50, random), h = between(0.01, 1.0, random);
     cb::FrontAxle const at{between(-5, 5, random), between(-3.1, 3.1, random), between(-0.2, 0.2, random)};
-    double const angle = driver.steering(at, v, 2.7, h);
+    double const angle = driver.lateral.steering(at, v, 2.7, h);
     REQUIRE(std::isfinite(angle));
-    CHECK(v * v * std::abs(std::tan(angle)) <= driver.lateral_acceleration_limit * 2.7 * (1 + 1e-9) + 1e-9);
+    CHECK(v * v * std::abs(std::tan(angle)) <= driver.lateral.lateral_acceleration_limit * 2.7 * (1 + 1e-9) + 1e-9);
   }
-  CHECK(driver.steering({}, 0.0, 2.7, 0.2) == 0.0);
+  CHECK(driver.lateral.steering({}, 0.0, 2.7, 0.2) == 0.0);
 }
 
 TEST_CASE("in dense traffic on a curve nobody collides") {
@@ -127,8 +127,6 @@ TEST_CASE("in dense traffic on a curve nobody collides") {
   cb::RandomStream random(6, 0, 0);
   for (int i = 0; i < 30; ++i)
     enter(world, lane_of(world.map(), 1 + i % 3), 10.0 + 25.0 * (i / 3) + 3.0 * cb::uniform01(random),
-          {.speed = 8.0,
-           .behavior = IdmLaneTracking{.idm = {.desired_speed = between(10, 20, random)},
-                                       .coolness = i % 2 == 0 ? 0.0 : 0.99}});
+          {.speed = 8.0, .behavior = IdmLaneTracking{.law = {.desired_speed = between(10, 20, random)}}});
   drive_safely(world, 70);
 }

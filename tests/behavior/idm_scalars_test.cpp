@@ -16,7 +16,7 @@ namespace {
 
 /// A random follower with moderate numbers.
 struct Case {
-  cb::IdmClassic p;
+  cb::Idm p;
   double speed, gap, leader_speed;
 
   explicit Case(cb::RandomStream& random)
@@ -80,7 +80,7 @@ TEST_CASE("with dual numbers IDM yields the derivatives of the acceleration") {
   }
   CHECK(compared > 5000);
   auto const free =
-      cb::idm_acceleration(cb::IdmClassic{}, Dual(10.0, 1.0), Dual(std::numeric_limits<double>::infinity()), Dual(0.0));
+      cb::idm_acceleration(cb::Idm{}, Dual(10.0, 1.0), Dual(std::numeric_limits<double>::infinity()), Dual(0.0));
   CHECK(free.d == doctest::Approx(-1.7 * 4 * std::pow(10.0 / 15, 3) / 15));
 }
 

@@ -1,4 +1,4 @@
-#include "cambium/behavior/following/idm_stochastic.hpp"
+#include "cambium/behavior/wrap/idm_stochastic.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "cambium/behavior/law/road_rules.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -14,9 +14,20 @@ using cb::IdmStochastic;
 
 namespace {
 
-using World = Traffic<IdmStochastic, cb::ConstantAcceleration>;
+using Yielding = cb::BasicIdmStochastic<cb::Uniform, cb::IdmClassic::Also<cb::Yielding<>>>;
+using World = Traffic<IdmStochastic, Yielding, cb::ConstantAcceleration>;
 
-World free_drivers(IdmStochastic const& driver, int agents, std::uint64_t seed) {
+Yielding yielding_driver(cb::Yielding<> const& yielding = {}) {
+  Yielding driver;
+  driver.driver = driver.driver.with(yielding);
+  return driver;
+}
+
+bool yields(World& world, std::uint32_t agent) {
+  return world.memory<Yielding>(static_cast<cb::AgentId>(agent)).driver.heeds.get<cb::Yielding<>>().yields;
+}
+
+World free_drivers(World::Behavior const& driver, int agents, std::uint64_t seed) {
   World world(straight_road(8, 3000), {.seed = seed});
   for (int i = 0; i < agents; ++i)
     world.add({.position = {20.0 + 150.0 * (i / 8), -1.75 - 3.5 * (i % 8)}, .speed = 14, .behavior = driver});
@@ -31,16 +42,16 @@ TEST_CASE("draws follow their distributions and stay within IDM's ranges") {
   for (std::uint32_t i = 0; i < 20000; ++i) {
     cb::RandomStream random(i, 0, 0);
     auto const p = driver.draw(random);
-    sum += p.time_headway;
-    low = std::min(low, p.time_headway);
-    high = std::max(high, p.time_headway);
+    sum += p.law.time_headway;
+    low = std::min(low, p.law.time_headway);
+    high = std::max(high, p.law.time_headway);
     REQUIRE_NOTHROW(cb::check_parameters(p));
   }
   CHECK(sum / 20000 == doctest::Approx(1.5).epsilon(0.01));
   CHECK(low < 1.001);
   CHECK(low >= 1.0);
   CHECK(high > 1.999);
-  cb::BasicIdmStochastic<cb::Normal> normal;
+  cb::BasicIdmStochastic<cb::Normal, cb::IdmClassic> normal;
   normal.desired_speed = {10.0, 1000.0};
   normal.maximum_acceleration = {0.0, 5.0};
   for (std::uint32_t i = 0; i < 2000; ++i) {
@@ -50,7 +61,7 @@ TEST_CASE("draws follow their distributions and stay within IDM's ranges") {
 }
 
 TEST_CASE("with parameters drawn once, each agent settles at its own speed on a free road") {
-  auto world = free_drivers({}, 40, 3);
+  auto world = free_drivers(IdmStochastic{}, 40, 3);
   for (int i = 0; i < 150; ++i) REQUIRE(world.step(0.2));
   std::set<double> speeds;
   for (auto const& record : world.frame().agents) {
@@ -77,8 +88,7 @@ TEST_CASE("with parameters drawn in every step, the acceleration is noisy") {
 }
 
 TEST_CASE("equal seeds give equal traffic, and different seeds differ") {
-  IdmStochastic driver;
-  driver.yielding.enabled = true;
+  auto const driver = yielding_driver();
   auto a = free_drivers(driver, 24, 3), b = free_drivers(driver, 24, 3), c = free_drivers(driver, 24, 4);
   step_all(50, 0.2, a, b, c);
   CHECK(a.frame() == b.frame());
@@ -86,9 +96,7 @@ TEST_CASE("equal seeds give equal traffic, and different seeds differ") {
 }
 
 TEST_CASE("yielding and insisting alternate with durations from their distributions") {
-  IdmStochastic driver;
-  driver.yielding = {.enabled = true, .yields = {2.0, 4.0}, .insists = {6.0, 8.0}};
-  auto world = free_drivers(driver, 16, 5);
+  auto world = free_drivers(yielding_driver({.yields = {2.0, 4.0}, .insists = {6.0, 8.0}}), 16, 5);
   double yielding = 0.0, all = 0.0;
   int changes = 0;
   std::vector<bool> before(16, false);
@@ -96,7 +104,7 @@ TEST_CASE("yielding and insisting alternate with durations from their distributi
     REQUIRE(world.step(0.1));
     for (std::uint32_t k = 0; k < 16; ++k) {
       if (world.frame().agents[k].status != cb::AgentStatus::driving) continue;
-      bool const now = world.memory<IdmStochastic>(static_cast<cb::AgentId>(k)).yields;
+      bool const now = yields(world, k);
       changes += now != before[k];
       before[k] = now;
       yielding += now;
@@ -108,16 +116,14 @@ TEST_CASE("yielding and insisting alternate with durations from their distributi
 }
 
 TEST_CASE("drivers do not yield in unison: at any time their number fits the durations") {
-  IdmStochastic driver;
-  driver.yielding = {.enabled = true, .yields = {4.0, 4.0}, .insists = {6.0, 6.0}};
+  auto const driver = yielding_driver({.yields = {4.0, 4.0}, .insists = {6.0, 6.0}});
   constexpr std::uint32_t count = 40;
   for (std::uint64_t const seed : {5u, 6u, 7u}) {
     auto world = free_drivers(driver, count, seed);
     for (int i = 0; i < 120; ++i) {
       REQUIRE(world.step(0.1));
       int yielding = 0;
-      for (std::uint32_t k = 0; k < count; ++k)
-        yielding += world.memory<IdmStochastic>(static_cast<cb::AgentId>(k)).yields;
+      for (std::uint32_t k = 0; k < count; ++k) yielding += yields(world, k);
       CHECK(yielding > 4);  // 16 expected, with a standard deviation of 3.1
       CHECK(yielding < 28);
     }
@@ -134,8 +140,8 @@ TEST_CASE("a yielding driver leaves room for a vehicle in the neighbouring lane 
     if (narrow.id == beside.id || narrow.successors.empty() || narrow.successors != beside.successors) continue;
     auto const rolling = [&](bool yields) {
       World world(map, {.seed = 3});
-      IdmStochastic driver;
-      driver.yielding = {.enabled = yields, .yields = {100.0, 100.0}, .insists = {0.1, 0.1}};
+      World::Behavior driver = IdmStochastic{};
+      if (yields) driver = yielding_driver({.yields = {100.0, 100.0}, .insists = {0.1, 0.1}});
       auto const id = enter(world, through, through.length() - 80.0, {.speed = 12, .behavior = driver});
       enter(world, lane, lane.length() - 10.0, {.speed = 9, .behavior = cb::ConstantAcceleration{}});
       for (int i = 0; i < 15; ++i) REQUIRE(world.step(0.2));

@@ -10,7 +10,7 @@
 namespace cb = cambium;
 
 TEST_CASE("a follower at the equilibrium gap keeps its speed") {
-  cb::IdmClassic const p;
+  cb::Idm const p;
   for (double v : {0.0, 1.0, 5.0, 10.0, 14.0}) {
     double const gap = cb::idm_equilibrium_gap(p, v);
     CHECK(cb::idm_acceleration(p, v, gap, v) == doctest::Approx(0.0).epsilon(1e-12));
@@ -22,19 +22,19 @@ TEST_CASE("a follower at the equilibrium gap keeps its speed") {
 }
 
 TEST_CASE("a closed gap causes the hardest braking") {
-  cb::IdmClassic const p;
+  cb::Idm const p;
   for (double gap : {0.0, -1.0, -1e9}) CHECK(cb::idm_acceleration(p, 10.0, gap, 10.0) == p.lowest_acceleration);
 }
 
 TEST_CASE("a faster leader is not mistaken for a close one") {
-  cb::IdmClassic const p;
+  cb::Idm const p;
   // Without the bound at the minimum gap the desired gap would be -26 m here, and its square would brake.
   CHECK(cb::idm_desired_gap(p, 10.0, 25.0) == p.minimum_gap);
   CHECK(cb::idm_acceleration(p, 10.0, 10.0, 25.0) > 0.0);
 }
 
 TEST_CASE("acceleration falls with speed, with a slower leader and with a smaller gap") {
-  cb::IdmClassic const p;
+  cb::Idm const p;
   cb::RandomStream random(3, 0, 0);
   for (int i = 0; i < 10000; ++i) {
     double const v = 30 * cb::uniform01(random), gap = 0.1 + 100 * cb::uniform01(random),
@@ -49,7 +49,7 @@ TEST_CASE("acceleration falls with speed, with a slower leader and with a smalle
 namespace {
 
 /// A twin of `idm_motion` by 20000 explicit midpoint steps.
-cb::LongitudinalMotion<double> fine_motion(cb::IdmClassic const& p, double v, double gap, double leader, double dt) {
+cb::LongitudinalMotion<double> fine_motion(cb::Idm const& p, double v, double gap, double leader, double dt) {
   constexpr int n = 20000;
   double const h = dt / n;
   double x = 0, speed = v;
@@ -79,7 +79,7 @@ TEST_CASE("the motion of a step solves the model's differential equation for any
   cb::RandomStream random(11, 0, 0);
   double worst_speed = 0, worst_distance = 0;
   for (int i = 0; i < 300; ++i) {
-    cb::IdmClassic p;
+    cb::Idm p;
     p.desired_speed = 5 + 30 * cb::uniform01(random);
     double const v = 25 * cb::uniform01(random), leader = 25 * cb::uniform01(random);
     double const gap = i % 5 == 0 ? std::numeric_limits<double>::infinity() : 1 + 80 * cb::uniform01(random);
@@ -98,7 +98,7 @@ TEST_CASE("the motion of a step solves the model's differential equation for any
 }
 
 TEST_CASE("a smaller tolerance makes the motion more accurate") {
-  cb::IdmClassic const p;
+  cb::Idm const p;
   auto const twin = fine_motion(p, 14.0, 12.0, 6.0, 2.0);
   double previous = 1.0;
   for (double tolerance : {1e-2, 1e-4, 1e-6}) {
@@ -110,7 +110,7 @@ TEST_CASE("a smaller tolerance makes the motion more accurate") {
 }
 
 TEST_CASE("a follower stops behind a standing leader, stands, and starts when the leader leaves") {
-  cb::IdmClassic const p;
+  cb::Idm const p;
   double gap = 30, v = 10;
   for (int i = 0; i < 400; ++i) {
     auto const m = cb::idm_motion(p, v, gap, 0.0, 0.2, 1e-4);
@@ -129,8 +129,8 @@ TEST_CASE("for any parameters, speeds and gap the motion is finite, forward and 
   double const infinite = std::numeric_limits<double>::infinity();
   int bounded = 0;
   for (int i = 0; i < 20000; ++i) {
-    cb::IdmClassic p;
-    cb::idm_parameters<cb::IdmClassic>()([&](auto const& entry) { p.*entry.field = any_in(entry.range, random); });
+    cb::Idm p;
+    cb::idm_parameters<cb::Idm>()([&](auto const& entry) { p.*entry.field = any_in(entry.range, random); });
     p.tolerance = any_in({1e-8, 1}, random);
     REQUIRE_NOTHROW(cb::check_parameters(p));
     double const speed = any_in({0, 60}, random), leader = any_in({0, 60}, random);

@@ -57,7 +57,7 @@ AgentId add_before(Sim& world, map::Route const& route, double distance, double 
   double s = map.lane(route.lanes[last]).length() - distance;
   while (s < 0.0 && last > 0) s += map.lane(route.lanes[--last]).length();
   return enter(world, map.lane(route.lanes[last]), s,
-               {.speed = speed, .behavior = Intersection{.idm = {.desired_speed = 10.0}}, .route = route, .id = id});
+               {.speed = speed, .behavior = Intersection{.law = {.desired_speed = 10.0}}, .route = route, .id = id});
 }
 
 /// Time [s] at which each agent of `ids` leaves the junction's lanes; none if it never does. Requires that nobody
@@ -327,9 +327,9 @@ TEST_CASE("a late runner passes in the first second of red, a driver that obeys 
       CAPTURE(distance);
       Sim world(crossing.map);
       auto const id = add_before(world, route, distance, 13.5);
-      Intersection driver{.idm = {.desired_speed = 13.9}};
-      driver.rules.obey_speed_limits = false;
-      driver.rules.late_at_red = late;
+      Intersection driver{.law = {.desired_speed = 13.9}};
+      driver.heed<Signals>().late_at_red = late;
+      driver.heed<SpeedLimit>().factor = 3.0;
       world.set_behavior(id, driver);
       auto const& signals = world.observe(id).corridor().signals;
       auto const signal = *std::ranges::find(signals, map::SignalKind::light, &map::CorridorSignal::kind);
@@ -380,7 +380,8 @@ TEST_CASE("a vehicle that has just split off and stands with its rear in the way
   for (double s = 1.0; s < 12.0; s += 1.0) {
     Sim at(crossing.map);
     enter(at, way, s,
-          {.behavior = IdmClassic{.desired_speed = 0.1, .maximum_acceleration = 0.01, .highest_acceleration = 0.0},
+          {.behavior =
+               IdmClassic{.law = {.desired_speed = 0.1, .maximum_acceleration = 0.01, .highest_acceleration = 0.0}},
            .route = turning});
     add_before(at, straight, 30.0, 8.0);
     (void)times_through(at, {}, 20.0);
@@ -411,12 +412,12 @@ TEST_CASE("a driver keeps the junction clear if there is no room behind it, unle
   for (bool const keep_clear : {true, false}) {
     Sim world(crossing.map);
     auto const id = add_before(world, route, 30.0, 6.0);
-    world.set_behavior(id, Intersection{.idm = {.desired_speed = 10.0}, .keep_clear = keep_clear});
+    world.set_behavior(id, Intersection{.law = {.desired_speed = 10.0}}.with(Conflicts{.keep_clear = keep_clear}));
     // A queue that hardly moves begins right behind the junction.
     std::size_t behind = 1;
     while (!is_in_junction(*crossing.map, route.lanes[behind])) ++behind;
     while (is_in_junction(*crossing.map, route.lanes[behind])) ++behind;
-    enter(world, crossing.map->lane(route.lanes[behind]), 2.0, {.behavior = IdmClassic{.desired_speed = 0.1}});
+    enter(world, crossing.map->lane(route.lanes[behind]), 2.0, {.behavior = IdmClassic{.law = {.desired_speed = 0.1}}});
     bool entered = false;
     for (int i = 0; i < 100; ++i) {
       REQUIRE(world.step(0.2));

@@ -1,4 +1,4 @@
-#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
+#include "cambium/behavior/drivers.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,7 @@ namespace {
 
 using Sim = Traffic<cb::LaneChangeRuleBased, cb::ConstantAcceleration, cb::BasicMobil<cb::FreeSpace>>;
 
-cb::LaneChangeRuleBased roomy(double desired_speed) { return {.idm = {.desired_speed = desired_speed}}; }
+cb::LaneChangeRuleBased roomy(double desired_speed) { return {.law = {.desired_speed = desired_speed}}; }
 
 /// A user's own condition: never to the left.
 struct NeverLeft {
@@ -44,7 +44,7 @@ TEST_CASE("a little more space is not worth a change") {
     add(world, 2, 240.0 + more, 14.0, cb::ConstantAcceleration{});
     auto const driver = add(world, 1, 200.0, 14.0, roomy(14.0));
     REQUIRE(world.step(0.2));
-    CHECK(world.memory<cb::LaneChangeRuleBased>(driver).change.active() == (more > 10.0));
+    CHECK(world.memory<cb::LaneChangeRuleBased>(driver).lateral.change.active() == (more > 10.0));
   }
 }
 
@@ -52,25 +52,25 @@ TEST_CASE("MOBIL changes only if its filters permit it, the library's and the us
   auto const changes = [](auto driver, int lane) {
     using Driver = decltype(driver);
     Traffic<Driver, cb::ConstantAcceleration> world(support::straight_road(3, 2000.0));
-    driver.idm.desired_speed = 20.0;
+    driver.law.desired_speed = 20.0;
     add(world, lane, 250.0, 8.0, cb::ConstantAcceleration{});
     auto const id = add(world, lane, 200.0, 14.0, driver);
     auto const free_lane = lane == 1 ? 2 : lane - 1;
     add(world, free_lane, 180.0, 14.0, cb::ConstantAcceleration{});
     if (lane == 2) add(world, 3, 205.0, 14.0, cb::ConstantAcceleration{});
     REQUIRE(world.step(0.2));
-    return world.template memory<Driver>(id).change.active();
+    return world.template memory<Driver>(id).lateral.change.active();
   };
   CHECK(changes(cb::Mobil{}, 1));
   CHECK(changes(cb::BasicMobil<cb::FreeSpace>{}, 1));
   cb::BasicMobil<cb::FreeSpace> wary;
-  wary.filters.first.rear = 20.0;
+  wary.lateral.rule.filters.first.rear = 20.0;
   CHECK(!changes(wary, 1));
   CHECK(changes(cb::Mobil{}, 2));
   CHECK(!changes(cb::BasicMobil<cb::FreeSpace, NeverLeft>{}, 2));
   CHECK(changes(cb::BasicMobil<cb::RemainingLength, NeverLeft>{}, 1));
   CHECK_NOTHROW(cb::check_parameters(wary));
-  wary.filters.first.rear = -1.0;
+  wary.lateral.rule.filters.first.rear = -1.0;
   CHECK_THROWS_AS(cb::check_parameters(wary), cb::ParameterError);
 }
 
@@ -94,11 +94,11 @@ TEST_CASE("MOBIL changes into a lane only if its speed limit is high enough") {
                                      .speed_limit = 20.0});
   for (double const least : {15.0, 25.0}) {
     Limited driver;
-    driver.filters.first.speed = least;
+    driver.lateral.rule.filters.first.speed = least;
     Traffic<Limited, cb::ConstantAcceleration> world(road);
     add(world, 1, 250.0, 8.0, cb::ConstantAcceleration{});
     auto const id = add(world, 1, 200.0, 14.0, driver);
     REQUIRE(world.step(0.2));
-    CHECK(world.memory<Limited>(id).change.active() == (least < 20.0));
+    CHECK(world.memory<Limited>(id).lateral.change.active() == (least < 20.0));
   }
 }

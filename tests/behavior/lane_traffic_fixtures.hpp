@@ -159,7 +159,7 @@ void fill_slow(World& world, int lanes, std::uint64_t seed, Driver const& driver
       speed = next;
     }
     auto slow = driver(false);
-    slow.idm.desired_speed = between(2.0, 5.0, random);
+    slow.law.desired_speed = between(2.0, 5.0, random);
     add(world, lane, 470.0 + 8.0 * lane, between(1.0, 4.0, random), slow);
   }
 }

@@ -1,5 +1,5 @@
-#include "cambium/behavior/lane_change/driver_actions.hpp"
-#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/actions/driver_actions.hpp"
+#include "cambium/behavior/actions/macro_actions.hpp"
 #include "cambium/evaluation/collision.hpp"
 
 #include <doctest/doctest.h>
@@ -218,10 +218,10 @@ TEST_CASE("a change into a lane that ends too soon is unavailable and does not b
 TEST_CASE("keeping the gap equals IDM") {
   World world(straight_road(1, 2000.0));
   world.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::MacroActions{}});
-  world.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.desired_speed = 6}});
+  world.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.law = {.desired_speed = 6}}});
   World other(world.shared_map());
   other.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::IdmClassic{}});
-  other.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.desired_speed = 6}});
+  other.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.law = {.desired_speed = 6}}});
   for (int i = 0; i < 40; ++i) {
     step_all(1, 0.25, world, other);
     CHECK(world.state(cb::AgentId{0}).x == doctest::Approx(other.state(cb::AgentId{0}).x).epsilon(1e-12));
@@ -351,7 +351,7 @@ TEST_CASE("an action that keeps the gap is no faster than car following permits,
                                            {Kind::change_left, 1.0}});
   auto const speed_after = [&](std::size_t action, double leader_y) {
     Highway at(macro);
-    at.world.add({.position = {115, leader_y}, .speed = 4, .behavior = cb::IdmClassic{.desired_speed = 4}});
+    at.world.add({.position = {115, leader_y}, .speed = 4, .behavior = cb::IdmClassic{.law = {.desired_speed = 4}}});
     at.choose(action);
     at.drive(4);
     return at.world.state(at.id).speed;
@@ -404,7 +404,7 @@ TEST_CASE("driver actions: its driver's plan, unless a macro action is chosen or
                .id = cb::AgentId{2}});
     return world;
   };
-  cb::Intersection const driver{.idm = {.desired_speed = 9.0}};
+  cb::Intersection const driver{.law = {.desired_speed = 9.0}};
   auto own = crossing(Junction{.driver = driver}), alike = crossing(driver);
   double slowest = 8.0;
   for (int i = 0; i < 60; ++i) {

@@ -47,11 +47,11 @@ TEST_CASE("cars, cyclists and pedestrians with their own dynamics follow their w
   Mixed world(map, {.seed = 2});
   using cb::map::LaneType;
   auto const car = enter(world, LaneType::driving, 10.0,
-                         {.speed = 8.0, .behavior = cb::IdmLaneTracking{.idm = {.desired_speed = 12.0}}});
+                         {.speed = 8.0, .behavior = cb::IdmLaneTracking{.law = {.desired_speed = 12.0}}});
   auto const cyclist = enter(world, LaneType::biking, 20.0,
                              {.speed = 3.0,
                               .shape = cb::geometry::bicycle(),
-                              .behavior = cb::IdmLaneTracking{.idm = cb::presets::cyclist()},
+                              .behavior = cb::IdmLaneTracking{.law = cb::presets::cyclist()},
                               .dynamics = cb::presets::bicycle_dynamics()});
   auto const walker = enter(world, LaneType::sidewalk, 10.0,
                             {.shape = cb::geometry::pedestrian(),
@@ -95,11 +95,11 @@ TEST_CASE("cars and bicycles in one lane follow each other without contact and m
     for (int i = 0; i < 10; ++i) {
       bool const cycles = cb::uniform01(random) < 0.4;
       double const most = cycles ? cb::presets::cyclist().desired_speed : 14.0, speed = most * cb::uniform01(random);
-      auto const idm = cycles ? cb::presets::cyclist() : cb::IdmParameters{.desired_speed = 14.0};
+      auto const idm = cycles ? cb::presets::cyclist() : cb::Idm{.desired_speed = 14.0};
       world.add({.position = {s, -1.75},
                  .speed = speed,
                  .shape = cycles ? cb::geometry::bicycle() : cb::geometry::car(),
-                 .behavior = cb::Intersection{.idm = idm},
+                 .behavior = cb::Intersection{.law = idm},
                  .dynamics = cycles ? cb::presets::bicycle_dynamics() : cb::SingleTrack{}});
       begins.push_back(s);
       s += 8.0 + 40.0 * cb::uniform01(random);

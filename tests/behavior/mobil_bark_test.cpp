@@ -22,9 +22,9 @@ constexpr cb::geometry::Shape bark_car{1.75, 2.25, 1.0, 1.0};
 /// BARK's defaults: politeness 0.2, threshold 0.2, safe deceleration 4; every driver is assumed to drive like oneself.
 Driver bark_driver(double desired_speed) {
   Driver driver;
-  driver.idm.desired_speed = driver.changing.others.desired_speed = desired_speed;
-  driver.minimum_remaining = 60.0;
-  driver.route_bias = 0.0;
+  driver.law.desired_speed = driver.lateral.others.desired_speed = desired_speed;
+  driver.lateral.rule.minimum_remaining = 60.0;
+  driver.lateral.rule.route_bias = 0.0;
   return driver;
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("MOBIL decides as BARK's where BARK sees the follower, and as publishe
   auto const wants = [&](int step, int agent) {
     auto world = world_at(rows, step);
     REQUIRE(world.step(0.2));
-    return world.memory<Driver>(static_cast<cb::AgentId>(agent)).change.active();
+    return world.memory<Driver>(static_cast<cb::AgentId>(agent)).lateral.change.active();
   };
   auto const bark_moves = [&](int step, int agent) {
     std::optional<double> now, next;

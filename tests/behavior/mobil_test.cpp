@@ -1,4 +1,4 @@
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/drivers.hpp"
 
 #include <doctest/doctest.h>
 
@@ -15,9 +15,11 @@ namespace {
 
 using Sim = Traffic<cb::Mobil, cb::IdmClassic, cb::ConstantAcceleration>;
 
-cb::Mobil mobil(double desired_speed) { return {.idm = {.desired_speed = desired_speed}}; }
+cb::Mobil mobil(double desired_speed) { return {.law = {.desired_speed = desired_speed}}; }
 
-cb::LaneChange change_of(Sim const& world, auto slot) { return std::get<0>(world.frame().agents[slot].memory).change; }
+cb::LaneChange change_of(Sim const& world, auto slot) {
+  return std::get<0>(world.frame().agents[slot].memory).lateral.change;
+}
 
 bool begins(Sim const& before, Sim const& world, auto slot) {
   return !change_of(before, slot).active() && change_of(world, slot).active();
@@ -43,7 +45,7 @@ std::pair<int, int> changes_and_returns(double threshold, double rest) {
   for (std::uint64_t seed = 1; seed <= 8; ++seed) {
     Sim world(support::straight_road(3, 3000.0), {.seed = seed});
     fill(world, 3, 5.0, 700.0, 2.0, seed, [&](double v) {
-      return cb::Mobil{.idm = {.desired_speed = v}, .changing = {.rest = rest}, .threshold = threshold};
+      return cb::Mobil{.law = {.desired_speed = v}, .lateral = {.rule = {.threshold = threshold}, .rest = rest}};
     });
     struct Last {
       cb::CorridorId from = cb::none<cb::CorridorId>;
@@ -80,11 +82,11 @@ TEST_CASE_TEMPLATE(
       Traffic<Driver> world(support::straight_road(lanes, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
       if (slow)
         fill_slow(world, lanes, seed, [](bool is_long) {
-          return Driver{.idm = is_long ? cb::presets::kesting_2010_truck() : cb::presets::kesting_2010_car()};
+          return Driver{.law = is_long ? cb::presets::kesting_2010_truck() : cb::presets::kesting_2010_car()};
         });
       else
         fill(world, lanes, 5.0, 600.0, 1.0 + static_cast<double>(seed % 4), seed,
-             [](double v) { return Driver{.idm = {.desired_speed = v}}; });
+             [](double v) { return Driver{.law = {.desired_speed = v}}; });
       CAPTURE(seed);
       for (int k = 0; k < (slow ? 450 : 300); ++k) {
         changes += step_and_count_changes(world, !slow && seed % 2 == 1 ? 0.1 : 0.2);
@@ -159,7 +161,8 @@ TEST_CASE("under the keep-right rule a fast driver does not pass a slower one on
   for (bool const rule : {false, true}) {
     Sim world(support::straight_road(2, 2000.0));
     auto const slow = add(world, 1, 150.0, 20.0, cb::ConstantAcceleration{});
-    cb::Mobil const driver{.idm = {.desired_speed = 30.0}, .threshold = 5.0, .keep_right = rule};  // stays on the right
+    cb::Mobil const driver{.law = {.desired_speed = 30.0},
+                           .lateral = {.rule = {.threshold = 5.0, .keep_right = rule}}};  // stays on the right
     auto const fast = add(world, 2, 50.0, 28.0, driver);
     for (int k = 0; k < 150; ++k) REQUIRE(world.step(0.2));
     CHECK((world.state(fast).x > world.state(slow).x) == !rule);
@@ -178,7 +181,8 @@ TEST_CASE("mirrored traffic, and left-hand traffic that keeps to its side, chang
       Sim world(road, {.seed = seed}), mirrored(left_hand ? left_hand_road : road, {.seed = seed});
       fill(world, 3, 5.0, left_hand ? 900.0 : 400.0, left_hand ? 0.2 : 2.0, seed, [left_hand](double v) {
         double const desired = left_hand ? 18.0 + 0.5 * v : v;
-        return cb::Mobil{.idm = {.desired_speed = desired}, .bias = left_hand ? 0.3 : 0.0, .keep_right = left_hand};
+        return cb::Mobil{.law = {.desired_speed = desired},
+                         .lateral = {.rule = {.bias = left_hand ? 0.3 : 0.0, .keep_right = left_hand}}};
       });
       double const axis = left_hand ? 0.0 : -5.25;
       for (std::size_t i = 0; i < world.size(); ++i) {
@@ -216,10 +220,10 @@ TEST_CASE("a change is aborted when a vehicle approaches in the new lane") {
     add(world, 2, at, 15.0, cb::ConstantAcceleration{.acceleration = 7.0});  // nobody expects that
     bool began = false;
     for (int k = 0; k < 60; ++k) {
-      auto const was = world.memory<cb::Mobil>(driver).change;
+      auto const was = world.memory<cb::Mobil>(driver).lateral.change;
       auto const home = world.record(driver).lane.corridor;
       REQUIRE(world.step(0.2));
-      auto const now = world.memory<cb::Mobil>(driver).change;
+      auto const now = world.memory<cb::Mobil>(driver).lateral.change;
       began = began || now.active();
       aborted += was.active() && was.target == cb::CorridorId{1} && now.active() && now.target == cb::CorridorId{} &&
                  home == cb::CorridorId{};
@@ -236,10 +240,11 @@ TEST_CASE("a vehicle that leaves its lane hides its leader from its follower, bu
     cb::RandomStream random(seed, 1, 0);
     Sim world(support::straight_road(2, 2500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
     double const v = between(6, 22, random), slow = seed % 5 == 0 ? 0.0 : v * between(0.0, 0.8, random);
-    cb::IdmClassic const idm{.desired_speed = 1.2 * v};
+    cb::IdmClassic const idm{.law = {.desired_speed = 1.2 * v}};
     auto const follower = add(world, 1, 100.0, v, seed % 2 == 0 ? Sim::Behavior(mobil(1.2 * v)) : Sim::Behavior(idm));
-    for (double const behind : {10.0, 30.0}) add(world, 2, 100.0 - behind, v, cb::IdmClassic{.desired_speed = v});
-    double const at = 104.5 + cb::idm_equilibrium_gap(idm, v) * between(0.7, 1.2, random);
+    for (double const behind : {10.0, 30.0})
+      add(world, 2, 100.0 - behind, v, cb::IdmClassic{.law = {.desired_speed = v}});
+    double const at = 104.5 + cb::idm_equilibrium_gap(idm.law, v) * between(0.7, 1.2, random);
     auto const leaving = add(world, 1, at, v, mobil(1.5 * v));
     double const way_to_brake = 6.5 + 1.5 * v + v * (v - slow) / 4;
     auto const ahead = add(world, 1, at + way_to_brake * between(0.7, 1.5, random), slow, cb::ConstantAcceleration{});
@@ -252,8 +257,8 @@ TEST_CASE("a vehicle that leaves its lane hides its leader from its follower, bu
       auto const& own = world.record(follower);
       double const gap = world.record(ahead).lane.s - own.lane.s - 4.5;
       hidden += own.lane.corridor == cb::CorridorId{} &&
-                cb::idm_acceleration(idm, own.state.speed, gap, slow) <
-                    cb::idm_acceleration(idm, own.state.speed, leader->gap, leader->speed);
+                cb::idm_acceleration(idm.law, own.state.speed, gap, slow) <
+                    cb::idm_acceleration(idm.law, own.state.speed, leader->gap, leader->speed);
     }
   }
   CHECK(hidden > 50);
@@ -291,7 +296,7 @@ TEST_CASE("drivers go around a standing object even if the other lane is busy") 
     auto const driver =
         add(world, number, 150.0 + 100.0 * cb::uniform01(random), 8 + 10 * cb::uniform01(random), mobil(18.0));
     for (double s = 60.0; s < 440.0; s += 16.0 + 6.0 * cb::uniform01(random))
-      add(world, 3 - number, s, 10.0, cb::IdmClassic{.desired_speed = 10.0});
+      add(world, 3 - number, s, 10.0, cb::IdmClassic{.law = {.desired_speed = 10.0}});
     drive_safely(world, 700);
     CAPTURE(seed);
     CHECK(world.state(driver).x > pose.x + 50.0);
@@ -303,7 +308,7 @@ TEST_CASE("a driver stops before the end of a lane without its goal, and changes
     auto const map = support::straight_road(2, 600.0);
     Sim world(map);
     auto const driver = add(world, 2, 60.0, 15.0, mobil(15.0), goal_on(*map, 1, 560.0));
-    for (double s = 20.0; s < 590.0; s += spacing) add(world, 1, s, 6.0, cb::IdmClassic{.desired_speed = 6.0});
+    for (double s = 20.0; s < 590.0; s += spacing) add(world, 1, s, 6.0, cb::IdmClassic{.law = {.desired_speed = 6.0}});
     bool reached = false;
     for (int k = 0; k < 1600 && !reached; ++k) {
       drive_safely(world, 1);
@@ -360,9 +365,10 @@ TEST_CASE("a merging vehicle never hides an object, whatever the ids") {
     auto const at = merge.corridor(merge.through).center.pose(merge.through.merge_at - 25.0);
     world.add_object(cb::geometry::Polygon(
         {{at.x - 1, at.y - 1}, {at.x + 1, at.y - 1}, {at.x + 1, at.y + 1}, {at.x - 1, at.y + 1}}));
-    auto const id = merge.add(
-        world, merge.through, 60.0,
-        {.speed = 12.0, .behavior = cb::Mobil{.threshold = 10.0}, .id = cb::AgentId{5}});  // stays in its lane
+    auto const id = merge.add(world, merge.through, 60.0,
+                              {.speed = 12.0,
+                               .behavior = cb::Mobil{.lateral = {.rule = {.threshold = 10.0}}},
+                               .id = cb::AgentId{5}});  // stays in its lane
     merge.add(world, merge.ramp, 34.0, {.speed = 12.0, .behavior = cb::ConstantAcceleration{}, .id = merging});
     REQUIRE(world.step(0.2));
     return world.record(id).action.acceleration;

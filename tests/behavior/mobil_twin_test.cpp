@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -26,7 +26,7 @@ struct Vehicle {
 };
 
 /// IDM's acceleration, without a leader if `gap` is infinite.
-double idm(cb::IdmParameters const& p, double desired, double v, double gap, double leader_speed) {
+double idm(cb::Idm const& p, double desired, double v, double gap, double leader_speed) {
   if (!(gap > 0.0)) return p.lowest_acceleration;
   double const wanted =
       p.minimum_gap +
@@ -54,22 +54,22 @@ struct Twin {
   }
 
   [[nodiscard]] double following(std::optional<Vehicle> const& leader) const {
-    double const v = own.speed, desired = driver.idm.desired_speed;
-    return leader ? idm(driver.idm, desired, v, leader->x - leader->rear - own.x - own.front, leader->speed)
-                  : idm(driver.idm, desired, v, nobody, 0.0);
+    double const v = own.speed, desired = driver.law.desired_speed;
+    return leader ? idm(driver.law, desired, v, leader->x - leader->rear - own.x - own.front, leader->speed)
+                  : idm(driver.law, desired, v, nobody, 0.0);
   }
 
   /// A follower's acceleration behind `leader`.
   [[nodiscard]] double of_follower(std::optional<Vehicle> const& who, std::optional<Vehicle> const& leader) const {
     if (!who) return 0.0;
-    auto const& p = who->length() > driver.changing.truck_length ? driver.changing.trucks : driver.changing.others;
+    auto const& p = who->length() > driver.lateral.truck_length ? driver.lateral.trucks : driver.lateral.others;
     double const desired = std::max(p.desired_speed, who->speed);
     return leader ? idm(p, desired, who->speed, leader->x - leader->rear - who->x - who->front, leader->speed)
                   : idm(p, desired, who->speed, nobody, 0.0);
   }
 
   [[nodiscard]] bool passes(std::optional<Vehicle> const& inner_leader) const {  // the condition of eq. 5
-    return inner_leader && own.speed > inner_leader->speed && inner_leader->speed > driver.critical_speed;
+    return inner_leader && own.speed > inner_leader->speed && inner_leader->speed > driver.lateral.rule.critical_speed;
   }
 
   /// Incentive of a change by one lane above its threshold, or nothing if it is unsafe.
@@ -81,42 +81,43 @@ struct Twin {
     double now = following(leader), then = following(new_leader);
     double of_new = of_follower(new_follower, own) - of_follower(new_follower, new_leader);
     double of_old = of_follower(follower, leader) - of_follower(follower, own);
-    if (driver.keep_right) {
+    if (driver.lateral.rule.keep_right) {
       auto const inner = next(own.lane - 1, true);
       double const gap = inner ? inner->x - inner->rear - own.x - own.front : nobody;
       if (passes(inner) && gap > 0.0)  // nobody brakes hard for it
         now = std::min(now,
-                       idm(driver.idm, driver.idm.desired_speed, own.speed,
-                           std::max(gap, driver.idm.minimum_gap + own.speed * driver.idm.time_headway), inner->speed));
+                       idm(driver.law, driver.law.desired_speed, own.speed,
+                           std::max(gap, driver.law.minimum_gap + own.speed * driver.law.time_headway), inner->speed));
       if (left && passes(new_leader)) now = std::min(now, then);
       if (!left && passes(leader)) then = std::min(now, then);
       (left ? of_old : of_new) = 0.0;  // eq. 6, 7
     } else {
       of_new = std::min(of_new, 0.0);  // see `BasicMobil`
     }
-    double const incentive = then - now + driver.politeness * (of_new + of_old) - driver.threshold;
+    double const incentive =
+        then - now + driver.lateral.rule.politeness * (of_new + of_old) - driver.lateral.rule.threshold;
     bool const has_room =
-        (!new_leader || new_leader->x - new_leader->rear - own.x - own.front > driver.changing.safe_gap) &&
-        (!new_follower || own.x - own.rear - new_follower->x - new_follower->front > driver.changing.safe_gap);
-    bool const is_safe = has_room && (!new_leader || following(new_leader) >= -driver.changing.safe_deceleration) &&
-                         (!new_follower || of_follower(new_follower, own) >= -driver.changing.safe_deceleration);
+        (!new_leader || new_leader->x - new_leader->rear - own.x - own.front > driver.lateral.safe_gap) &&
+        (!new_follower || own.x - own.rear - new_follower->x - new_follower->front > driver.lateral.safe_gap);
+    bool const is_safe = has_room && (!new_leader || following(new_leader) >= -driver.lateral.safe_deceleration) &&
+                         (!new_follower || of_follower(new_follower, own) >= -driver.lateral.safe_deceleration);
     if (!is_safe) return std::nullopt;
-    return incentive + (left ? -driver.bias : driver.bias);
+    return incentive + (left ? -driver.lateral.rule.bias : driver.lateral.rule.bias);
   }
 };
 
 cb::Mobil random_driver(cb::RandomStream& random) {
   cb::Mobil driver;
-  driver.idm.desired_speed = between(15.0, 40.0, random);
-  driver.idm.time_headway = between(0.8, 2.0, random);
-  driver.idm.minimum_gap = between(1.0, 3.0, random);
-  driver.politeness = between(0.0, 1.0, random);
-  driver.threshold = between(0.0, 0.5, random);
-  driver.bias = between(-0.5, 0.5, random);
-  driver.keep_right = cb::uniform01(random) < 0.5;
-  driver.critical_speed = between(5.0, 25.0, random);
-  driver.changing.safe_deceleration = between(1.0, 6.0, random);
-  driver.changing.safe_gap = between(0.5, 4.0, random);
+  driver.law.desired_speed = between(15.0, 40.0, random);
+  driver.law.time_headway = between(0.8, 2.0, random);
+  driver.law.minimum_gap = between(1.0, 3.0, random);
+  driver.lateral.rule.politeness = between(0.0, 1.0, random);
+  driver.lateral.rule.threshold = between(0.0, 0.5, random);
+  driver.lateral.rule.bias = between(-0.5, 0.5, random);
+  driver.lateral.rule.keep_right = cb::uniform01(random) < 0.5;
+  driver.lateral.rule.critical_speed = between(5.0, 25.0, random);
+  driver.lateral.safe_deceleration = between(1.0, 6.0, random);
+  driver.lateral.safe_gap = between(0.5, 4.0, random);
   return driver;
 }
 
@@ -163,10 +164,10 @@ TEST_CASE("MOBIL decides by equations 2 to 7, in thousands of random situations"
     int const expected = most <= 0.0 ? 0 : left.value_or(-1e9) == most ? -1 : 1;
     auto const& piece = world.observe(id).corridor().pieces[world.record(id).lane.piece];
     REQUIRE(world.step(0.1));
-    auto const change = std::get<0>(world.record(id).memory).change;
+    auto const change = std::get<0>(world.record(id).memory).lateral.change;
     int const decided = !change.active() ? 0 : change.target == piece.left ? -1 : 1;
     CAPTURE(number);
-    CAPTURE(driver.keep_right);
+    CAPTURE(driver.lateral.rule.keep_right);
     CAPTURE(left.value_or(-1e9));
     CAPTURE(right.value_or(-1e9));
     CHECK(decided == expected);

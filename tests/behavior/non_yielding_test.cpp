@@ -44,7 +44,7 @@ Outcomes run(cb::MergingTraffic const& traffic, int scenarios) {
 cb::AgentId add(Sim& world, MergingRoad::Entrance const& from, double before, double speed, cb::Merging merging) {
   double const beyond = merge().corridor(from).feeders.front().free_until - from.merge_at;
   return merge().add(world, from, before - beyond + cb::geometry::car().front,
-                     {.speed = speed, .behavior = cb::IdmClassic{.rules = {.merging = merging}}});
+                     {.speed = speed, .behavior = cb::IdmClassic{.lateral = {.merging = merging}}});
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ TEST_CASE("a driver that gives way lets those pass whose gap is too short, takes
 
 TEST_CASE("a driver waits for those whose gap behind it would be too short at the merge, as a simulated twin says") {
   double const before = 25.0, length = cb::geometry::car().length();
-  cb::RoadRules const rules{.merging = cb::Merging::gives_way};
+  cb::KeepLane const lateral;
   for (double const speed : {5.5, 8.0, 11.0})
     for (double const theirs : {6.0, 10.0, 16.0}) {
       // The twin pulls away by 1 m/s^2, up to the speed of the vehicle behind; that one keeps its speed until the merge
@@ -132,7 +132,8 @@ TEST_CASE("a driver waits for those whose gap behind it would be too short at th
         way += then * dt;
       }
       double const slower = std::max(0.0, theirs - then);
-      double const needed = 2.0 + rules.merging_headway * theirs + slower * slower / (2.0 * rules.safe_deceleration);
+      double const needed =
+          2.0 + lateral.merging_headway * theirs + slower * slower / (2.0 * lateral.safe_deceleration);
       double const threshold = needed + theirs * time - before + length;
       for (double const behind : {threshold - 0.3, threshold + 0.3}) {
         Sim world(merge().site.map);
@@ -141,7 +142,7 @@ TEST_CASE("a driver waits for those whose gap behind it would be too short at th
         CAPTURE(speed);
         CAPTURE(theirs);
         CAPTURE(threshold);
-        CHECK(rules.gap_to_wait_for(world.observe(own)).has_value() == (behind < threshold));
+        CHECK(lateral.gap_to_wait_for(world.observe(own), cb::Merging::gives_way).has_value() == (behind < threshold));
       }
     }
 }

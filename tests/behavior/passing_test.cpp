@@ -41,11 +41,17 @@ Behavior cyclist(double desired_speed = 5.0) {
   auto idm = cb::presets::cyclist();
   idm.desired_speed = desired_speed;
   Behavior behavior;
-  behavior.rules = cb::presets::cyclist_rules();
-  if constexpr (requires { behavior.idm; })
-    behavior.idm = idm;
+  auto& law = behavior.law;
+  law.desired_speed = idm.desired_speed;
+  law.time_headway = idm.time_headway;
+  law.minimum_gap = idm.minimum_gap;
+  law.maximum_acceleration = idm.maximum_acceleration;
+  law.comfortable_deceleration = idm.comfortable_deceleration;
+  law.lowest_acceleration = idm.lowest_acceleration;
+  if constexpr (requires { behavior.lateral.keep; })
+    behavior.lateral.keep = cb::presets::cyclist_lane();
   else
-    cb::follow_as(behavior, idm);
+    behavior.lateral = cb::presets::cyclist_lane();
   return behavior;
 }
 
@@ -127,7 +133,7 @@ TEST_CASE_TEMPLATE("drivers pass a cyclist with 1.5 m of air where the lane allo
     auto const slow = enter(world, begin, pace * between(0.6, 1.0, random), cyclist(pace), cb::geometry::bicycle(),
                             (right_hand ? -1.0 : 1.0) * (0.5 * width - 0.4 - 0.325));
     Behavior driver;
-    if constexpr (requires { driver.idm; }) driver.idm.desired_speed = between(9.0, 15.0, random);
+    if constexpr (requires { driver.law; }) driver.law.desired_speed = between(9.0, 15.0, random);
     auto const id = enter(world, 5.0, std::min(between(0.0, 14.0, random), 0.15 * begin), driver);
     double least = 1e9, hardest = 0.0, hardest_of_slow = 0.0;
     for (int i = 0; i < 400; ++i) {
@@ -172,7 +178,7 @@ TEST_CASE("a truck needs a wider lane than a car to pass, and a larger clearance
     CAPTURE(clearance);
     Sim world(street(width));
     auto const slow = enter(world, 80.0, 5.0, cyclist(), cb::geometry::bicycle(), -(0.5 * width - 0.725));
-    auto const id = enter(world, 10.0, 5.0, cb::IdmClassic{.rules = {.passing_clearance = clearance}}, shape);
+    auto const id = enter(world, 10.0, 5.0, cb::IdmClassic{.lateral = {.passing_clearance = clearance}}, shape);
     double least = 1e9;
     for (int i = 0; i < 400; ++i) {
       drive_safely(world, 1);
@@ -224,7 +230,7 @@ TEST_CASE("cars, vans and cyclists of different speeds share wide lanes without 
         auto const id = enter(world, s, speed, cyclist(between(3.0, 7.0, random)), cb::geometry::bicycle());
         if (!first) first = id;
       } else if (kind < 0.8 || !first) {
-        auto const id = enter(world, s, speed, cb::IdmClassic{.desired_speed = 13.0});
+        auto const id = enter(world, s, speed, cb::IdmClassic{.law = {.desired_speed = 13.0}});
         if (!first) car = id;
       } else {
         enter(world, s, speed, cb::Mobil{}, cb::geometry::van());
@@ -243,15 +249,15 @@ TEST_CASE("nobody passes a vehicle that drives in the middle, is about to move o
   auto const map = street(7.0);
   auto const passes = [&](double lateral, double heading, double speed, cb::geometry::Shape const& shape) {
     Sim world(map);
-    auto const slow = enter(world, 60.0, speed, cb::IdmClassic{.desired_speed = speed}, shape, lateral);
+    auto const slow = enter(world, 60.0, speed, cb::IdmClassic{.law = {.desired_speed = speed}}, shape, lateral);
     auto state = world.state(slow);
     state.heading = heading;
     world.set_state(slow, state);
     auto const id = enter(world, 40.0, 8.0, cb::IdmClassic{});
     auto const view = world.observe(id);
-    cb::RoadRules::Memory memory;
-    cb::IdmLaw const law(cb::IdmParameters{}, 8.0);
-    (void)cb::RoadRules{}.next_in_way(view, law, memory);
+    cb::KeepLane::Memory memory;
+    cb::Idm const law;
+    (void)cb::KeepLane{}.next_in_way(view, cb::Limits(law, 8.0, law.desired_speed), memory);
     return memory.aside != 0;
   };
   auto const bicycle = cb::geometry::bicycle();
@@ -315,8 +321,8 @@ TEST_CASE("as long as everybody drives in the middle, the rules of passing chang
   cb::RandomStream random(3, 14, 0);
   for (double s = 10.0; s < 600.0; s += between(12.0, 60.0, random)) {
     double const desired = between(4.0, 20.0, random);
-    enter(usual, s, 4.0, cb::IdmClassic{.desired_speed = desired});
-    enter(other, s, 4.0, cb::IdmClassic{.desired_speed = desired, .rules = {.passing_clearance = 0.3}});
+    enter(usual, s, 4.0, cb::IdmClassic{.law = {.desired_speed = desired}});
+    enter(other, s, 4.0, cb::IdmClassic{.law = {.desired_speed = desired}, .lateral = {.passing_clearance = 0.3}});
   }
   for (int i = 0; i < 300; ++i) {
     step_all(1, 0.2, usual, other);

@@ -224,7 +224,8 @@ TEST_CASE("a pedestrian that relies on braking drivers gets across unhurt") {
     for (int i = 0; i < 3; ++i)
       walkers.push_back(walk(world, across, {319.0 + i, 6.0 + between(0.0, 1.0, random)},
                              {.crossing = {.demanded_deceleration = 2.0}}));
-    add_vehicles(world, random, 1.5, 8.0, 14.0, [](double speed) { return cb::IdmClassic{.desired_speed = speed}; });
+    add_vehicles(world, random, 1.5, 8.0, 14.0,
+                 [](double speed) { return cb::IdmClassic{.law = {.desired_speed = speed}}; });
     drive_safely(world, 900, 0.1);
     for (auto const id : walkers) crossed += world.status(id) == cb::AgentStatus::arrived;
   }
@@ -253,7 +254,7 @@ TEST_CASE("a pedestrian between two lanes does not wait for a queue of traffic t
     auto const id = walk(world, way({{320, 8}, {320, -14}}), {320, -2.7});  // in the first lane, before the second
     double const speed = 4.0 + 0.1 * seed;
     for (double x = 315.0 - 0.5 * seed; x > 5.0; x -= 6.5 + 1.6 * speed)
-      world.add({.position = {x, -5.25}, .speed = speed, .behavior = cb::IdmClassic{.desired_speed = speed}});
+      world.add({.position = {x, -5.25}, .speed = speed, .behavior = cb::IdmClassic{.law = {.desired_speed = speed}}});
     double crossed = 1e9;
     for (int i = 0; i < 300 && crossed > 1e8; ++i) {
       drive_safely(world, 1, 0.1);

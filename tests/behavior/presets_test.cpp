@@ -27,11 +27,6 @@ TEST_CASE("presets of pedestrians and cyclists are valid; a cyclist brakes no ha
 TEST_CASE("presets of drivers are valid and drive as their names say") {
   using namespace cb::presets;
   for (auto const& preset : all) CHECK_NOTHROW(cb::check_parameters(preset.parameters));
-  cb::IdmParameters const unusual{1.0, 2.0, 3.0, 4.0, 5.0, 6.0, -7.0, 8.5};
-  CHECK(cb::idm_acceleration(cb::idm_classic(unusual), 0.5, 9.0, 0.1) == cb::idm_acceleration(unusual, 0.5, 9.0, 0.1));
-  cb::IdmParameters followed;
-  cb::follow_as(followed, unusual);
-  CHECK(cb::equal_parameters(followed, unusual));
   double const gap = 40.0, speed = 25.0, leader = 24.0;
   double const hasty = cb::idm_acceleration(aggressive(), speed, gap, leader),
                usual = cb::idm_acceleration(kesting_2010_car(), speed, gap, leader),
@@ -56,9 +51,9 @@ TEST_CASE_TEMPLATE("a temperament makes a whole driver, whatever the model", Dri
                hasty = presets::aggressive<Driver>();
   for (auto const& driver : {timid, normal, hasty}) CHECK_NOTHROW(cb::check_parameters(driver));
   if constexpr (requires { hasty.nominal; })
-    CHECK(hasty.nominal.rules.late_at_red == 1.0);
+    CHECK(cb::equal_parameters(hasty.nominal.law, presets::Temperament{.idm = presets::aggressive()}.idm));
   else
-    CHECK(hasty.rules.late_at_red == 1.0);
+    CHECK(hasty.law.time_headway == presets::aggressive().time_headway);
   // On a motorway with a slow leader, the hastier one keeps less time headway.
   auto const headway = [](Driver const& driver) {
     Traffic<DRIVERS, cb::ConstantAcceleration> world(support::straight_road(1, 5000.0));
@@ -74,16 +69,16 @@ TEST_CASE_TEMPLATE("a temperament makes a whole driver, whatever the model", Dri
 
 TEST_CASE("temperaments have the numbers that their description derives from the literature") {
   auto const numbers = [](cb::Mobil const& d, cb::Intersection const& at) -> std::vector<double> {
-    return {d.politeness,
-            d.threshold,
-            d.changing.safe_deceleration,
-            d.changing.abort_deceleration,
-            d.rules.lateral_acceleration,
-            d.rules.safe_deceleration,
-            d.rules.merging_headway,
-            d.rules.late_at_red,
-            d.rules.speed_factor,
-            at.time_margin};
+    return {d.lateral.rule.politeness,
+            d.lateral.rule.threshold,
+            d.lateral.safe_deceleration,
+            d.lateral.abort_deceleration,
+            d.heed<cb::Bends>().lateral_acceleration,
+            at.heed<cb::Signals>().safe_deceleration,
+            d.lateral.keep.merging_headway,
+            at.heed<cb::Signals>().late_at_red,
+            at.heed<cb::SpeedLimit>().factor,
+            at.heed<cb::Conflicts>().time_margin};
   };
   using namespace cb::presets;
   CHECK(numbers(timid<cb::Mobil>(), timid<cb::Intersection>()) ==
@@ -92,22 +87,22 @@ TEST_CASE("temperaments have the numbers that their description derives from the
         std::vector{0.2, 0.2, 4.0, 4.5, 3.0, 3.0, 1.0, 0.0, 1.0, 1.0});
   CHECK(numbers(aggressive<cb::Mobil>(), aggressive<cb::Intersection>()) ==
         std::vector{0.0, 0.1, 5.0, 5.5, 4.0, 2.0, 0.5, 1.0, 1.1, 0.6});
-  CHECK(timid<cb::Intersection>().idm.time_headway == timid().time_headway);
-  CHECK(timid<cb::IdmClassic>().exponent == timid().exponent);
+  CHECK(timid<cb::Intersection>().law.time_headway == timid().time_headway);
+  CHECK(timid<cb::IdmClassic>().law.exponent == timid().exponent);
 }
 
 TEST_CASE("an aggressive driver drives faster than the limit, a timid one slower") {
   namespace presets = cb::presets;
-  auto const speed = [](cb::IdmClassic driver) {
-    driver.rules.obey_speed_limits = true;
+  using Lawful = cb::IdmClassic::Also<cb::SpeedLimit>;
+  auto const speed = [](Lawful const& driver) {
     auto const map = support::own_map("intersection_4way.xodr");
-    Traffic<cb::IdmClassic> world(map);
+    Traffic<Lawful> world(map);
     auto const& lane = map->lane(map->find_lane("1", 50.0, -2));
     auto const id = enter(world, lane, 1.0, {.speed = 13.9, .behavior = driver});
     for (int k = 0; k < 12; ++k) REQUIRE(world.step(0.2));
     return world.state(id).speed / lane.speed_limit_at(0.0);
   };
-  CHECK(speed(presets::timid<cb::IdmClassic>()) < 0.99);
-  CHECK(speed(presets::aggressive<cb::IdmClassic>()) > 1.01);
-  CHECK(speed(presets::normal<cb::IdmClassic>()) == doctest::Approx(1.0).epsilon(0.01));
+  CHECK(speed(presets::timid<Lawful>()) < 0.99);
+  CHECK(speed(presets::aggressive<Lawful>()) > 1.01);
+  CHECK(speed(presets::normal<Lawful>()) == doctest::Approx(1.0).epsilon(0.01));
 }

@@ -6,8 +6,8 @@
 
 #include "../support/maps.hpp"
 #include "../support/scale.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/safety/rss_conformant.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/wrap/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"

@@ -1,4 +1,4 @@
-#include "cambium/behavior/safety/rss.hpp"
+#include "cambium/behavior/wrap/rss.hpp"
 
 #include <doctest/doctest.h>
 

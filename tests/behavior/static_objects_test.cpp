@@ -100,7 +100,7 @@ TEST_CASE("neighbour queries find objects on bicycle lanes and free ways, too") 
   auto const cyclist = world.add({.position = start,
                                   .speed = 4,
                                   .shape = cb::geometry::bicycle(),
-                                  .behavior = cb::IdmClassic{.desired_speed = 5},
+                                  .behavior = cb::IdmClassic{.law = {.desired_speed = 5}},
                                   .route = cb::map::straight_route(*road, biking)});
   std::vector<cb::geometry::Point> const points{{0, 20}, {100, 20}};
   auto const way = cb::map::build_free_corridor(*road, points);

@@ -124,7 +124,7 @@ TEST_CASE("a driver brakes comfortably for a pedestrian still beside the road, a
   auto const hardest = [](double crossing_time) {
     Sim world(road);
     auto const id =
-        add(world, 1, 20.0, 10.0, cb::IdmClassic{.desired_speed = 10.0, .rules = {.crossing_time = crossing_time}});
+        add(world, 1, 20.0, 10.0, cb::IdmClassic{.law = {.desired_speed = 10.0}}.with(cb::Pedestrians{crossing_time}));
     auto const pedestrian = walker(world, {100.0, 3.0}, {100.0, -10.0});
     std::pair<double, double> result;
     for (int i = 0; i < 300; ++i) {
@@ -148,7 +148,7 @@ TEST_CASE("a driver brakes comfortably for a pedestrian still beside the road, a
 TEST_CASE("nobody brakes for a pedestrian who waits, walks along the kerb, walks away, or crosses much later") {
   auto const drives_freely = [](Point const& from, Point const& to, double speed) {
     Sim world(road);
-    auto const id = add(world, 1, 20.0, 12.0, cb::IdmClassic{.desired_speed = 12.0});
+    auto const id = add(world, 1, 20.0, 12.0, cb::IdmClassic{.law = {.desired_speed = 12.0}});
     walker(world, from, to, speed);
     for (int i = 0; i < 100; ++i) {
       REQUIRE(world.step(0.1));
@@ -185,7 +185,7 @@ TEST_CASE("a pedestrian and a driver do not wait for each other for good") {
 TEST_CASE("without the rule, drivers heed pedestrians only in their lane") {
   auto const drive = [](double crossing_time, bool has_pedestrian) {
     Sim world(road);
-    auto const id = add(world, 1, 20.0, 12.0, cb::IdmClassic{.rules = {.crossing_time = crossing_time}});
+    auto const id = add(world, 1, 20.0, 12.0, cb::IdmClassic{}.with(cb::Pedestrians{crossing_time}));
     if (has_pedestrian) walker(world, {100.0, 7.0}, {100.0, 0.8}, 1.2);  // ends beside the lane
     std::vector<cb::State> states;
     for (int i = 0; i < 70; ++i) {

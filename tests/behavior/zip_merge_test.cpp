@@ -1,4 +1,4 @@
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/drivers.hpp"
 
 #include <doctest/doctest.h>
 
@@ -29,7 +29,7 @@ std::map<cb::AgentId, int> queues(Sim& world, std::uint64_t seed, int block, dou
   return from;
 }
 
-cb::ZipMerge zip(double desired_speed) { return {.idm = {.desired_speed = desired_speed}}; }
+cb::ZipMerge zip(double desired_speed) { return {.law = {.desired_speed = desired_speed}}; }
 
 /// The lanes from which vehicles pass position x, in this order.
 struct Passed {
@@ -88,7 +88,8 @@ TEST_CASE("IDM drivers merge in no alternating order") {
   int same = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     Sim world(map, {.seed = seed});
-    auto const from = queues(world, seed, 2, 10.0, [](double v) { return cb::IdmClassic{.desired_speed = v}; });
+    auto const from =
+        queues(world, seed, 2, 10.0, [](double v) { return cb::IdmClassic{.law = {.desired_speed = v}}; });
     auto const passed = run(world, from, 640.0, 700);
     CHECK(passed.lanes.size() == from.size());
     same += passed.same();
@@ -114,7 +115,7 @@ TEST_CASE(
       if (cb::uniform01(random) < 0.5)
         add(world, 2 + lane, s, 6.0, zip(desired), {}, shape);
       else
-        add(world, 2 + lane, s, 6.0, cb::IdmClassic{.desired_speed = desired}, {}, shape);
+        add(world, 2 + lane, s, 6.0, cb::IdmClassic{.law = {.desired_speed = desired}}, {}, shape);
       place[lane] = s - shape.rear - between(6.0, 14.0, random);
       ++entered;
     }
@@ -188,8 +189,8 @@ TEST_CASE("a driver loses its patience with a vehicle that stands, and only then
   auto const start_of = [](double patience) {
     Blocked world(own_map("lane_drop.xodr"));
     auto driver = zip(14.0);
-    driver.patience = patience;
-    add(world, 2, 438.0, 8.0, cb::IdmClassic{.desired_speed = 14.0});
+    driver.heed<cb::Zip>().patience = patience;
+    add(world, 2, 438.0, 8.0, cb::IdmClassic{.law = {.desired_speed = 14.0}});
     auto const id = add(world, 2, 428.0, 0.0, driver);
     add(world, 3, 424.0, 0.0, cb::ConstantAcceleration{});  // its turn, but it never starts
     while (world.time() < 40.0 && world.state(id).speed < 1.0) REQUIRE(world.step(0.2));

@@ -55,7 +55,7 @@ struct Faulty {
 };
 
 std::vector<Contender<Traffic>> contenders() {
-  return {contender<Traffic>(IdmClassic{.desired_speed = 22.0}), contender<Traffic>(Mobil{}),
+  return {contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}}), contender<Traffic>(Mobil{}),
           contender<Traffic>(ConstantAcceleration{}, "keep_speed"), contender<Traffic>(Faulty{Fault::throws}, "throws"),
           contender<Traffic>(Faulty{Fault::no_plan}, "gives_up")};
 }
@@ -181,11 +181,12 @@ TEST_CASE("who chooses from several behaviours drives as by the one that is chos
     return contender_by<Traffic>("either", "", 1,
                                  [changes_lanes](auto const&, auto const&) -> OneOf<IdmClassic, Mobil> {
                                    if (changes_lanes) return Mobil{};
-                                   return IdmClassic{.desired_speed = 22.0};
+                                   return IdmClassic{.law = {.desired_speed = 22.0}};
                                  });
   };
   for (auto const& scenario : set.scenarios) {
-    auto const follower = contender<Traffic>(IdmClassic{.desired_speed = 22.0}).run(scenario, {}, false).result;
+    auto const follower =
+        contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}}).run(scenario, {}, false).result;
     auto const changer = contender<Traffic>(Mobil{}).run(scenario, {}, false).result;
     CHECK(same(choosing(false).run(scenario, {}, false).result, follower));
     CHECK(same(choosing(true).run(scenario, {}, false).result, changer));
@@ -195,12 +196,12 @@ TEST_CASE("who chooses from several behaviours drives as by the one that is chos
 
 TEST_CASE("a result is what an own loop finds") {
   auto const set = support::merging_set<Traffic>(6);
-  auto const idm = contender<Traffic>(IdmClassic{.desired_speed = 22.0});
+  auto const idm = contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}});
   for (auto const& scenario : set.scenarios) {
     auto const run = idm.run(scenario, {}, true);
     CHECK(run.result.error == "");
     auto const mine = with_behaviors<Traffic>(scenario, [&](auto const& spec) -> Traffic::Behavior {
-      if (*spec.id == scenario.ego) return IdmClassic{.desired_speed = 22.0};
+      if (*spec.id == scenario.ego) return IdmClassic{.law = {.desired_speed = 22.0}};
       return spec.behavior.given();
     });
     auto world = mine.make_world();
@@ -238,7 +239,7 @@ TEST_CASE("who leaves the map before its goal has left its way") {
   REQUIRE(ego != scenario.agents.end());
   scenario.ego = *other->id;  // on the through road
   other->goal = Goal(StateLimits{.lowest_speed = 90.0});
-  auto const run = contender<Traffic>(IdmClassic{.desired_speed = 22.0}).run(scenario, {}, false);
+  auto const run = contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}}).run(scenario, {}, false);
   CHECK(run.result.error == "");
   CHECK_FALSE(run.result.success);
   CHECK_FALSE(run.result.timed_out);
@@ -316,7 +317,7 @@ TEST_CASE("the replay of a failure goes when it is a failure no more") {
   bool throws = true;
   auto const choose = [&](auto const&, auto const&) -> OneOf<IdmClassic, Faulty> {
     if (throws) return Faulty{Fault::throws};
-    return IdmClassic{.desired_speed = 22.0};
+    return IdmClassic{.law = {.desired_speed = 22.0}};
   };
   ResultStore store(folder.path() / "r.db");
   BenchmarkOptions options{.replays = Replays::failures, .replay_folder = folder.path() / "replays"};
@@ -386,7 +387,7 @@ TEST_CASE("replays that cannot be written are reported once, and the results are
 
 TEST_CASE("a run whose plans take too long together ends with an error") {
   auto const set = support::merging_set<Traffic>(1);
-  auto const idm = contender<Traffic>(IdmClassic{.desired_speed = 22.0});
+  auto const idm = contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}});
   auto const slow = idm.run(set.scenarios[0], {.plan_limit = 1e-12}, false);
   CHECK(slow.result.steps == 1);
   CHECK_FALSE(slow.result.success);
@@ -414,7 +415,7 @@ TEST_CASE("an error names the agent that failed, and a failure of others is only
     if (*spec.id == others.front()) return gives_up;
     return std::get<IdmClassic>(spec.behavior.given());
   });
-  auto const counted = contender<Mixed>(IdmClassic{.desired_speed = 22.0}).run(scenario, {}, false).result;
+  auto const counted = contender<Mixed>(IdmClassic{.law = {.desired_speed = 22.0}}).run(scenario, {}, false).result;
   CHECK(counted.error == "");
   CHECK(counted.others_failed == 1);
   CHECK(counted.steps > 1);
@@ -435,7 +436,7 @@ TEST_CASE("agents see what their observers let them see, and a lonely ego has no
   auto scenario = with_behaviors<Noisy>(
       support::merging_set<Traffic>(1).scenarios[0],
       [](auto const& spec) -> Noisy::Behavior { return std::get<IdmClassic>(spec.behavior.given()); });
-  auto const idm = contender<Noisy>(IdmClassic{.desired_speed = 22.0});
+  auto const idm = contender<Noisy>(IdmClassic{.law = {.desired_speed = 22.0}});
   auto const clear = idm.run(scenario, {}, false).result;
   for (auto& spec : scenario.agents) spec.observer = ParametricObserver{.others = {.along = 3.0}};
   auto const blurred = idm.run(scenario, {}, false).result;
@@ -467,7 +468,7 @@ TEST_CASE("a database of an older version is read, and gets the columns that it 
   browser::TemporaryFolder const folder;
   auto const file = folder.path() / "old.db";
   auto const set = support::merging_set<Traffic>(2);
-  std::vector const idm{contender<Traffic>(IdmClassic{.desired_speed = 22.0})};
+  std::vector const idm{contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}})};
   std::string before;
   {
     ResultStore store(file);

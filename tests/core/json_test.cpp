@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/actions/macro_actions.hpp"
 #include "cambium/behavior/open_loop/motion_primitives.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"

@@ -75,11 +75,11 @@ TEST_CASE("a line for logs names each field, a number with its unit") {
 
 TEST_CASE("a number is set by its key, and nothing else changes") {
   Mobil driver;
-  set_parameter(driver, "idm.desired_speed", 31.0);
-  set_parameter(driver, "politeness", 0.25);
+  set_parameter(driver, "law.desired_speed", 31.0);
+  set_parameter(driver, "lateral.rule.politeness", 0.25);
   Mobil expected;
-  expected.idm.desired_speed = 31.0;
-  expected.politeness = 0.25;
+  expected.law.desired_speed = 31.0;
+  expected.lateral.rule.politeness = 0.25;
   CHECK(equal_parameters(driver, expected));
   Search search;
   set_parameter(search, "speed.uniform.high", 5.0);
@@ -93,18 +93,18 @@ TEST_CASE("the range of a number is found by its place, in structs within the st
     auto const found = detail::range_at(type_info<Mobil>(), &driver, &place);
     return std::pair(found.low, found.high);
   };
-  CHECK(range(driver.politeness) == std::pair(-1.0, 10.0));
-  CHECK(range(driver.idm.desired_speed) == std::pair(0.1, 100.0));
-  CHECK(range(driver.changing.course.duration) != std::pair(any_finite.low, any_finite.high));
+  CHECK(range(driver.lateral.rule.politeness) == std::pair(-1.0, 10.0));
+  CHECK(range(driver.law.desired_speed) == std::pair(0.1, 100.0));
+  CHECK(range(driver.lateral.course.duration) != std::pair(any_finite.low, any_finite.high));
   double const elsewhere = 0.0;
   CHECK(range(elsewhere) == std::pair(any_finite.low, any_finite.high));
 }
 
 TEST_CASE("a key that names no number, or one out of range, is an error with the nearest key") {
-  CHECK(refusal(Mobil{}, "idm.desird_speed", 1.0) ==
-        "f.json: idm.desird_speed: there is no number of that key; is it desired_speed?");
-  CHECK(refusal(Mobil{}, "politness", 1.0).find("is it politeness?") != std::string::npos);
-  CHECK(refusal(Mobil{}, "idm", 1.0) == "f.json: idm: there is no number of that key; name a number in it");
+  CHECK(refusal(Mobil{}, "law.desird_speed", 1.0) ==
+        "f.json: law.desird_speed: there is no number of that key; is it desired_speed?");
+  CHECK(refusal(Mobil{}, "politness", 1.0).find("is it lateral.rule.politeness?") != std::string::npos);
+  CHECK(refusal(Mobil{}, "law", 1.0) == "f.json: law: there is no number of that key; name a number in it");
   CHECK(refusal(Mobil{}, "", 1.0).find("f.json: the empty key: there is no number of that key") == 0);
   CHECK(refusal(Uniform{}, "x", 1.0) == "f.json: x: there is no number of that key; give one of low, high");
   for (std::string const key : {"parts", "parts.low", "parts[0].low"})

@@ -16,12 +16,10 @@
 #include "../support/allocations.hpp"
 #include "../support/error_of.hpp"
 #include "../support/maps.hpp"
+#include "../support/scale.hpp"
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -55,9 +53,11 @@ struct StraightOn {
   }
 };
 
-using Drivers = BehaviorSet<ConstantAcceleration, IdmClassic, StraightOn, ZipMerge, Intersection, Mobil>;
+using Obeying = IdmClassic::Also<Signals>;
+using Drivers =
+    BehaviorSet<ConstantAcceleration, IdmClassic, Obeying, StraightOn, ZipMerge, Intersection, Mobil, UrbanDriver>;
 using Sim = World<Drivers, InterpolateExecution, SingleTrack>;
-using Driver = Sim::Behavior;
+using AnyDriver = Sim::Behavior;
 
 // Three lanes of 3.5 m along +x.
 constexpr double left = -1.75, middle = -5.25, right = -8.75;
@@ -65,7 +65,7 @@ constexpr double left = -1.75, middle = -5.25, right = -8.75;
 constexpr double dt = 0.2;
 
 /// An agent that keeps its speed.
-AgentId add(Sim& world, double x, double y, double speed, Driver const& behavior = ConstantAcceleration{}) {
+AgentId add(Sim& world, double x, double y, double speed, AnyDriver const& behavior = ConstantAcceleration{}) {
   return world.add({.position = {x, y}, .speed = speed, .behavior = behavior});
 }
 
@@ -84,7 +84,7 @@ bool says(Label const& label, double y, double x_other, double y_other, double s
 double const length = geometry::car().length(), front = geometry::car().front;
 
 /// An agent on lane `id` of the world's map, at `s` of its path.
-AgentId add_on(Sim& world, LaneId id, double s, double speed, Driver const& behavior, map::Route const& route = {}) {
+AgentId add_on(Sim& world, LaneId id, double s, double speed, AnyDriver const& behavior, map::Route const& route = {}) {
   auto const pose = world.map().lane(id).path.pose(s);
   Sim::AgentSpec spec{.position = pose.position(), .heading = pose.heading, .speed = speed, .behavior = behavior};
   if (!route.lanes.empty()) spec.route = route;
@@ -96,7 +96,7 @@ template <class Sampled>
 Sim world_of(Sampled const& scenario) {
   return with_behaviors<Sim>(scenario,
                              [](auto const& spec) {
-                               return std::visit([](auto const& driver) { return Driver(driver); },
+                               return std::visit([](auto const& driver) { return AnyDriver(driver); },
                                                  spec.behavior.given());
                              })
       .make_world();
@@ -486,7 +486,7 @@ struct WhoYields {
 
   /// Both approach: the agent `way` before the zone, the other one `other_way`.
   [[nodiscard]] Sim world(double way, double other_way, double speed, double other_speed,
-                          Driver const& behavior) const {
+                          AnyDriver const& behavior) const {
     Sim made(map);
     auto const place = [&](map::Route const& route, double s) {
       auto const before = map->lane(route.lanes.front()).length();
@@ -748,8 +748,8 @@ TEST_CASE("drivers who keep to the highway rules break none of them, and each of
   Sim calm(support::straight_road(3, 3000));
   for (int i = 0; i < 5; ++i) {
     add(calm, 100 + 60 * i, left, 30);
-    add(calm, 120 + 60 * i, middle, 25, IdmClassic{.desired_speed = 25});
-    add(calm, 140 + 60 * i, right, 20, IdmClassic{.desired_speed = 20});
+    add(calm, 120 + 60 * i, middle, 25, IdmClassic{.law = {.desired_speed = 25}});
+    add(calm, 140 + 60 * i, right, 20, IdmClassic{.law = {.desired_speed = 20}});
   }
   for (auto const& found : violations(calm, rules, 20)) {
     CAPTURE(found.first);
@@ -757,7 +757,8 @@ TEST_CASE("drivers who keep to the highway rules break none of them, and each of
   }
 
   Sim tailgating(support::straight_road(3, 3000));
-  auto const tailgater = add(tailgating, 100, middle, 20, IdmClassic{.desired_speed = 30, .time_headway = 0.2});
+  auto const tailgater =
+      add(tailgating, 100, middle, 20, IdmClassic{.law = {.desired_speed = 30, .time_headway = 0.2}});
   add(tailgating, 150, middle, 20);
   auto found = violations_of(tailgating, tailgater, rule(rules, "safe_distance"), 30);
   REQUIRE(found.size() == 1);
@@ -838,12 +839,12 @@ TEST_CASE("drivers who open a gap keep the zip merge rule, drivers who close it 
   std::size_t kept = 0, broken = 0, asked = 0;
   for (std::uint32_t number = 0; number < 12; ++number)
     for (bool const zips : {true, false}) {
-      auto const scenario = with_behaviors<Sim>(site.sample(7, number), [&](auto const& spec) -> Driver {
+      auto const scenario = with_behaviors<Sim>(site.sample(7, number), [&](auto const& spec) -> AnyDriver {
         auto const& idm = *std::get_if<IdmClassic>(&spec.behavior.given());
-        if (zips) return ZipMerge{.idm = {.desired_speed = idm.desired_speed}};
+        if (zips) return ZipMerge{.law = {.desired_speed = idm.law.desired_speed}};
         auto pushing = idm;
-        pushing.time_headway = 0.4;
-        pushing.rules.merging = Merging::ignored;
+        pushing.law.time_headway = 0.4;
+        pushing.lateral.merging = Merging::ignored;
         return pushing;
       });
       auto found = violations(scenario.make_world(), {rules.front(), occurs}, 40);
@@ -853,6 +854,25 @@ TEST_CASE("drivers who open a gap keep the zip merge rule, drivers who close it 
   CHECK(kept == 0);
   CHECK(broken > 1);
   CHECK(asked > 20);
+}
+
+TEST_CASE("urban drivers keep the zip merge rule almost always") {
+  auto const site = find_merging_site(support::own_map("lane_drop.xodr"));
+  auto const rules = zip_merge_rules({500, 0});
+  TrafficRule<RuleLabels<>> const occurs{
+      .name = "occurs", .formula = "G !(zip_partner & precedes)", .labels = rules.front().labels};
+  std::size_t broken = 0, asked = 0;
+  for (std::uint32_t number = 0; number < support::runs(20); ++number) {
+    auto const scenario = with_behaviors<Sim>(site.sample(7, number), [](auto const& spec) -> AnyDriver {
+      return UrbanDriver{.law = std::get<IdmClassic>(spec.behavior.given()).law};
+    });
+    auto found = violations(scenario.make_world(), {rules.front(), occurs}, 40);
+    broken += found["zip_merge"];
+    asked += found["occurs"];
+  }
+  MESSAGE(broken << " of " << asked << " leave no room for the one whose turn it is");
+  CHECK(asked >= support::runs(20));
+  CHECK(20 * broken <= asked);
 }
 
 TEST_CASE(
@@ -898,10 +918,9 @@ TEST_CASE("drivers who know intersections keep their rules on all of our maps") 
 
 TEST_CASE("drivers who do not stop or do not give way break the rules of intersections") {
   auto const rules = intersection_rules();
-  RoadRules obeying;
-  obeying.obey_signals = true;
   for (bool const obeys : {false, true}) {
-    IdmClassic const driver{.desired_speed = 12, .rules = obeys ? obeying : RoadRules{}};
+    auto const driver =
+        obeys ? AnyDriver(Obeying{.law = {.desired_speed = 12}}) : AnyDriver(IdmClassic{.law = {.desired_speed = 12}});
     Sim stopping(support::road_with_signal("206"));
     auto const runner = add(stopping, 100, -1.75, 10, driver);
     auto found = violations_of(stopping, runner, rule(rules, "stop_sign"), 40);
@@ -919,7 +938,7 @@ TEST_CASE("drivers who do not stop or do not give way break the rules of interse
 
   WhoYields const at;
   for (bool const knows : {false, true}) {
-    auto const driver = knows ? Driver(Intersection{}) : Driver(ConstantAcceleration{});
+    auto const driver = knows ? AnyDriver(Intersection{}) : AnyDriver(ConstantAcceleration{});
     auto world = at.world(20, 22, 5, 5.5, driver);
     auto const found = violations_of(world, world.roster().agents[0].id, rule(rules, "give_way"), 15);
     CHECK(world.record(world.roster().agents[0].id).lane.s > at.zone.begin);

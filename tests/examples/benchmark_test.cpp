@@ -163,7 +163,7 @@ TEST_CASE("failed runs leave replays that the report links, and a command that r
   CHECK(row["error"] == 1.0);
   CHECK(row["mean_time_s"].is_null());
 
-  cambium::write_file(folder.file("its parameters.json"), R"({"idm": {"time_headway": 3}})");
+  cambium::write_file(folder.file("its parameters.json"), R"({"idm": {"law": {"time_headway": 3}}})");
   REQUIRE(program
               .run({"--set", "exit", "--behaviors", "idm", "--scenarios", "1", "--db", folder.file("with.db"),
                     "--plan-limit", "60", "--parameters", folder.file("its parameters.json")})

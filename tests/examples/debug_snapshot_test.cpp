@@ -126,7 +126,7 @@ TEST_CASE("failures of the benchmark leave snapshots that open at the desk") {
       {*std::find_if(found.begin(), found.end(), is_search), "--edit", "behavior.options.budget.iterations=0"},
       "iterations");
   auto const is_mobil = [](auto const& file) { return has(file, "cut_out_mobil"); };
-  debug.refuses({*std::find_if(found.begin(), found.end(), is_mobil), "--edit", "memory.change.target=99"},
+  debug.refuses({*std::find_if(found.begin(), found.end(), is_mobil), "--edit", "memory.lateral.change.target=99"},
                 "remembers a lane that its road lacks");
   auto const elsewhere = debug.run({found.front(), "--map", CAMBIUM_SOURCE_DIR "/maps/merging.xodr"});
   CHECK(elsewhere.code == 2);

@@ -63,14 +63,14 @@ TEST_CASE("every model, goal, driver and shape in the headers is in its room's t
   auto const kind = [](char const* folder, char const* declaration, int least) {
     return Kind{rooms / folder, std::regex(declaration), least};
   };
-  for (auto const& one : {kind("behavior", "\nstatic_assert\\((?:BehaviorModel|CorridorFilter)<(\\w+)[<>]", 19),
-                          kind("planner", "\nstruct (Mcts|\\w+Planner) \\{", 4),
-                          kind("dynamics", "\nstatic_assert\\(DynamicModel<(\\w+)[<>]", 4),
-                          kind("execution", "\nstatic_assert\\(ExecutionModel<(\\w+)[<>]", 3),
-                          kind("observer", "\nstatic_assert\\(ObserverModel<(\\w+)[<>]", 4),
-                          kind("goal", "\nstruct ((?!GoalSituation)\\w+) \\{", 10),
-                          kind("behavior", "constexpr IdmParameters (\\w+)\\(\\)", 5),
-                          kind("geometry", "constexpr Shape (\\w+)\\(\\)", 8)}) {
+  for (auto const& one :
+       {kind("behavior", "\nstatic_assert\\((?:BehaviorModel|CorridorFilter)<(\\w+)[<>]", 19),
+        kind("planner", "\nstruct (Mcts|\\w+Planner) \\{", 4),
+        kind("dynamics", "\nstatic_assert\\(DynamicModel<(\\w+)[<>]", 4),
+        kind("execution", "\nstatic_assert\\(ExecutionModel<(\\w+)[<>]", 3),
+        kind("observer", "\nstatic_assert\\(ObserverModel<(\\w+)[<>]", 4),
+        kind("goal", "\nstruct ((?!GoalSituation)\\w+) \\{", 10), kind("behavior", "constexpr Idm (\\w+)\\(\\)", 5),
+        kind("geometry", "constexpr Shape (\\w+)\\(\\)", 8)}) {
     auto const text = tables(one.folder);
     int found = 0;
     for (auto const& file : fs::recursive_directory_iterator(one.folder)) {

@@ -28,9 +28,9 @@ TEST_CASE("sampled examples: printed parameters read back as the same results, c
   struct Case {
     std::string name, change;
   };
-  for (auto const& example : {Case{"merging", R"({"idm_classic": {"time_headway": 3}})"},
-                              Case{"zip_merge", R"({"format": 1, "zip_merge": {"idm": {"time_headway": 3}}})"},
-                              Case{"highway", R"({"mobil": {"idm": {"desired_speed": 18}}})"},
+  for (auto const& example : {Case{"merging", R"({"idm_classic": {"law": {"time_headway": 3}}})"},
+                              Case{"zip_merge", R"({"format": 1, "zip_merge": {"law": {"time_headway": 3}}})"},
+                              Case{"highway", R"({"mobil": {"law": {"desired_speed": 18}}})"},
                               Case{"intersection", R"({"junction_traffic": {"most_vehicles": 5}})"}}) {
     auto const &name = example.name, &change = example.change;
     CAPTURE(name);
@@ -63,10 +63,17 @@ TEST_CASE("a wrong file of parameters is refused with file, key and remedy") {
     return run.err.substr(run.err.find("p.json: ") + 8);
   };
   CHECK(refusal(R"({"mobill": {}})") == "this program has no parameters \"mobill\"; is it mobil?\n");
-  CHECK(refusal(R"({"mobil": {"politness": 1}})") == "mobil: has no field \"politness\"; is it politeness?\n");
-  CHECK(refusal(R"({"mobil": {"idm": {"desired_speed": "fast"}}})") ==
-        "mobil.idm.desired_speed: is \"fast\"; give a number\n");
-  CHECK(refusal(R"({"mobil": {"idm": {"time_headway": -1}}})").find("mobil.idm.time_headway: is -1 s; give a value") ==
+  CHECK(refusal(R"({"mobil": {"lateral": {"rule": {"politness": 1}}}})") ==
+        "mobil.lateral.rule: has no field \"politness\"; is it politeness?\n");
+  // Keys of earlier versions, by the name of a field, of its type, and of a field in it.
+  CHECK(refusal(R"({"mobil": {"politeness": 1}})") ==
+        "mobil: has no field \"politeness\"; is it lateral.rule.politeness?\n");
+  CHECK(refusal(R"({"mobil": {"idm": {"desired_speed": 9}}})") == "mobil: has no field \"idm\"; is it law?\n");
+  CHECK(refusal(R"({"mobil": {"changing": {"safe_gap": 1}}})") ==
+        "mobil: has no field \"changing\"; its safe_gap may be lateral.safe_gap\n");
+  CHECK(refusal(R"({"mobil": {"law": {"desired_speed": "fast"}}})") ==
+        "mobil.law.desired_speed: is \"fast\"; give a number\n");
+  CHECK(refusal(R"({"mobil": {"law": {"time_headway": -1}}})").find("mobil.law.time_headway: is -1 s; give a value") ==
         0);
   CHECK(refusal(R"({"format": 2})") == "format: is not 1, the one that this version reads; write \"format\": 1\n");
   CHECK(refusal("[1]").find("is a list; give an object") == 0);
@@ -84,22 +91,22 @@ TEST_CASE("ring, lane_change, replace_agents, soak and benchmark take parameters
                          "no parameters \"idm_classic\"",
                          {"--length", "600", "--minutes", "1", "--density", "30"}},
                         {"lane_change",
-                         R"({"idm_classic": {"desired_speed": 9}})",
+                         R"({"idm_classic": {"law": {"desired_speed": 9}}})",
                          R"({"mcts": {"option": {}}})",
                          "is it options?",
                          {"--scenarios", "3", "--iterations", "20", "--variation", "0.4"}},
                         {"replace_agents",
-                         R"({"mobil": {"idm": {"desired_speed": 3}}})",
-                         R"({"mobil": {"idm": {"exponent": []}}})",
-                         "mobil.idm.exponent: is []",
+                         R"({"mobil": {"law": {"desired_speed": 3}}})",
+                         R"({"mobil": {"law": {"exponent": []}}})",
+                         "mobil.law.exponent: is []",
                          {"--recordings", "1", "--iterations", "2"}},
                         {"soak",
-                         R"({"idm_classic": {"time_headway": 3}})",
-                         R"({"zip_merg": {}})",
-                         "is it zip_merge?",
+                         R"({"urban_driver": {"law": {"time_headway": 3}}})",
+                         R"({"urban_driver": {"heed": {}}})",
+                         "is it heeds?",
                          {"--map", CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr", "--minutes", "2", "--threads", "1"}},
                         {"benchmark",
-                         R"({"idm": {"time_headway": 3}})",
+                         R"({"idm": {"law": {"time_headway": 3}}})",
                          R"({"mcts": {}})",
                          "is it mcts_",
                          {"--set", "merging", "--behaviors", "idm", "--scenarios", "3", "--threads", "1"}}};

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/observer/delayed.hpp"
 #include "cambium/observer/parametric.hpp"
@@ -46,7 +46,7 @@ TEST_CASE("an agent that sees itself late, or elsewhere, drives as far as its sp
 }
 
 TEST_CASE("an agent that sees itself as it is drives like one with a perfect observer, bit by bit") {
-  cb::IdmLaneTracking const driver{.idm = {.desired_speed = 12.0}};
+  cb::IdmLaneTracking const driver{.law = {.desired_speed = 12.0}};
   CHECK(after_driving(cb::ParametricObserver{}, driver) == after_driving(cb::PerfectObserver{}, driver));
 }
 
@@ -56,7 +56,7 @@ TEST_CASE("an agent that misjudges its speed keeps its true speed while it does 
 
 TEST_CASE("an agent that steers by what it sees comes to where it believes its lane to be") {
   cb::ParametricObserver const observer{.own = {.mean_across = 0.4}};
-  auto const state = after_driving(observer, cb::IdmLaneTracking{.idm = {.desired_speed = 10.0}});
+  auto const state = after_driving(observer, cb::IdmLaneTracking{.law = {.desired_speed = 10.0}});
   CHECK(state.y == doctest::Approx(-1.75 - 0.4).epsilon(0.01));
   CHECK(state.heading == doctest::Approx(0.0).epsilon(0.01));
 }

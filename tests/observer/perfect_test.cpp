@@ -5,13 +5,11 @@
 #include <cmath>
 
 #include "observed_traffic.hpp"
-#include "cambium/behavior/following/idm_stochastic.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/lane_change/idm_proposal.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/wrap/idm_stochastic.hpp"
+#include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/actions/idm_proposal.hpp"
 #include "cambium/behavior/pedestrian/pedestrian.hpp"
-#include "cambium/behavior/safety/rss_conformant.hpp"
+#include "cambium/behavior/wrap/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/observer/parametric.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/building/polyline_roads.hpp"
 #include "planner/games.hpp"
@@ -50,8 +50,8 @@ Sim as_expected() {
 Sim behind(double headway) {
   Sim world(support::straight_road(1, 2000.0));
   world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
-  world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.time_headway = headway}});
-  world.add({.position = {115, -1.75}, .speed = 10, .behavior = IdmClassic{.desired_speed = 10}});
+  world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.law = {.time_headway = headway}}});
+  world.add({.position = {115, -1.75}, .speed = 10, .behavior = IdmClassic{.law = {.desired_speed = 10}}});
   return world;
 }
 
@@ -94,7 +94,7 @@ Wandering through_the_narrowing(int most_agents) {
   planner.most_agents = most_agents;
   planner.actions = MacroActions::of(
       {{MacroAction::Kind::stay, 0.0}, {MacroAction::Kind::stay, 1.5}, {MacroAction::Kind::stay, -3.0}});
-  planner.others.desired_speed = 9.0;
+  planner.others.law.desired_speed = 9.0;
   planner.reward = TrafficReward::events();
   planner.reward.goal = 0.0;
   planner.reward.collision = planner.reward.off_road = -100.0;
@@ -246,7 +246,7 @@ TEST_CASE("nothing is kept if anything has changed, or without a call of keep") 
   CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.most_agents = 2; }) == 0);
   CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.options.search.discount = 0.0; }) == 0);
   CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.reward.progress -= 1.0; }) == 0);
-  CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.others.time_headway = 0.5; }) == 0);
+  CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.others.law.time_headway = 0.5; }) == 0);
   CHECK(kept_nodes(true, [](auto& world, auto&, auto&) {
           auto const& at = world.state(ego);
           geometry::Point const front{at.x + 40.0, at.y};
@@ -425,13 +425,14 @@ TEST_CASE("an observed speed changes a belief by its normal distribution about w
     CAPTURE(late);
     Sim world(support::straight_road(1, 2000.0));
     world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
-    auto const other = world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.time_headway = 1.7}});
-    world.add({.position = {125, -1.75}, .speed = 12, .behavior = IdmClassic{.desired_speed = 12}});
+    auto const other =
+        world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.law = {.time_headway = 1.7}}});
+    world.add({.position = {125, -1.75}, .speed = 12, .behavior = IdmClassic{.law = {.desired_speed = 12}}});
     std::vector<double> predicted;  // by each region's headway, carried on to when it observes
     for (std::size_t r = 0; r < static_cast<std::size_t>(planner.others.regions); ++r) {
       Sim trial = world;
       auto driver = planner.others.driver;
-      driver.time_headway = planner.others.headway(r, 0.5);
+      driver.law.time_headway = planner.others.headway(r, 0.5);
       trial.set_behavior(other, driver);
       REQUIRE(trial.step(interval));
       double const speed = trial.state(other).speed;

@@ -32,7 +32,7 @@ using Sim = World<BehaviorSet<IdmClassic, Plain, Truncated, Policy, Timed, Expec
 template <class Planner>
 Planner careful() {
   Planner planner;
-  planner.others.desired_speed = 0.1;  // like the vehicle that stands there
+  planner.others.law.desired_speed = 0.1;  // like the vehicle that stands there
   planner.reward.goal = 0.0;
   planner.reward.progress = 1.0;
   planner.options.budget.iterations = 300;
@@ -62,7 +62,7 @@ TEST_CASE("every variant of the search stops behind a standing vehicle") {
     for (std::uint64_t seed = 0; seed < support::runs(2); ++seed) {
       Sim world(support::straight_road(1, 300.0), {.seed = seed});
       world.add({.position = {30, -1.75}, .speed = 12, .behavior = planner});
-      world.add({.position = {90, -1.75}, .speed = 0, .behavior = IdmClassic{.desired_speed = 0.1}});
+      world.add({.position = {90, -1.75}, .speed = 0, .behavior = IdmClassic{.law = {.desired_speed = 0.1}}});
       for (int step = 0; step < 50; ++step) {
         REQUIRE(world.step(0.2));
         REQUIRE_FALSE(Collision{}(world, world.slot_of(ego)));

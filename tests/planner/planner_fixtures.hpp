@@ -91,8 +91,8 @@ World lane_change(std::uint64_t seed, Planner const& planner) {
   for (int i = 0; i < 4; ++i)
     world.add({.position = {20.0 + 28.0 * i + 3.0 * static_cast<double>(seed), -1.75},
                .speed = 12.5,
-               .behavior = IdmClassic{.desired_speed = 14.0}});
-  world.add({.position = {95.0, -5.25}, .speed = 9, .behavior = IdmClassic{.desired_speed = 9.0}});
+               .behavior = IdmClassic{.law = {.desired_speed = 14.0}}});
+  world.add({.position = {95.0, -5.25}, .speed = 9, .behavior = IdmClassic{.law = {.desired_speed = 9.0}}});
   return world;
 }
 

@@ -5,9 +5,8 @@
 #include <type_traits>
 #include <variant>
 
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/lane_change/driver_actions.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/actions/driver_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/road/curve_layout.hpp"
@@ -21,11 +20,16 @@ using namespace planner_fixtures;
 
 namespace {
 
-using Search = Mcts<PredictionWorld, MacroActions, TrafficReward, ConstantAcceleration>;
-#define ALL_PLANNERS Search, Learning, Proposal, PolicyTree, Frenet
+using Actions = BasicMacroActions<Idm, Bends>;
+using Predicted =
+    World<BehaviorSet<Actions, ConstantAcceleration, HeadwayHypotheses<IdmClassic>>, InterpolateExecution, SingleTrack>;
+using Search = Mcts<Predicted, Actions, TrafficReward, ConstantAcceleration>;
+using Learner = Mcts<Predicted, Actions, TrafficReward, HeadwayHypotheses<IdmClassic>>;
+using Tree = PolicyTreePlanner<Predicted, Actions>;
+#define ALL_PLANNERS Search, Learner, Proposal, Tree, Frenet
 // Those who expect the others to go on as they do. `HeadwayHypotheses<IdmClassic>` expects that a standing vehicle
 // drives off.
-#define STEADY_PLANNERS Search, Proposal, PolicyTree, Frenet
+#define STEADY_PLANNERS Search, Proposal, Tree, Frenet
 
 using Sim = World<BehaviorSet<ALL_PLANNERS, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
 
@@ -43,7 +47,6 @@ Planner quick() {
     planner.reward.progress = 1.0;
     planner.belief.interval = planner.options.step;
   }
-  if constexpr (requires { planner.actions; }) planner.actions.rules.slow_for_bends = true;
   if constexpr (requires { planner.limits; }) planner.limits.lateral_acceleration = highest_lateral;
   return planner;
 }
@@ -145,7 +148,7 @@ TEST_CASE_TEMPLATE("it merges into traffic and gets to its goal", Planner, ALL_P
 
 TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_PLANNERS) {
   // A search with few iterations finds the change of lanes in some of the runs.
-  constexpr bool passes = std::is_same_v<Planner, PolicyTree> || std::is_same_v<Planner, Frenet>;
+  constexpr bool passes = std::is_same_v<Planner, Tree> || std::is_same_v<Planner, Frenet>;
   std::uint64_t passed = 0;
   for (std::uint64_t seed = 0; seed < support::runs(5); ++seed) {
     CAPTURE(seed);
@@ -155,8 +158,8 @@ TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_P
     double const slow = Uniform{3.0, 7.0}(random);
     auto const begin = Uniform{60.0, 80.0}(random), beside = Uniform{0.0, 20.0}(random);
     world.add({.position = {30.0, -5.25}, .speed = Uniform{8.0, 14.0}(random), .behavior = planner});
-    world.add({.position = {begin, -5.25}, .speed = slow, .behavior = IdmClassic{.desired_speed = slow}});
-    world.add({.position = {beside, -1.75}, .speed = 13.0, .behavior = IdmClassic{.desired_speed = 13.0}});
+    world.add({.position = {begin, -5.25}, .speed = slow, .behavior = IdmClassic{.law = {.desired_speed = slow}}});
+    world.add({.position = {beside, -1.75}, .speed = 13.0, .behavior = IdmClassic{.law = {.desired_speed = 13.0}}});
     (void)drive<Planner>(seed, world, ego, planner, 30.0);
     double const ahead = world.state(ego).x - world.state(AgentId{1}).x;
     CHECK(ahead > (passes ? 20.0 : -30.0));
@@ -168,11 +171,11 @@ TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_P
 namespace {
 
 /// A search that, by default, may drive by the rules at junctions and expects the others to.
-using Actions = DriverActions<Intersection>;
+using RuledActions = DriverActions<Intersection>;
 using Ruled =
-    World<BehaviorSet<Actions, Intersection, HeadwayHypotheses<Intersection>>, InterpolateExecution, SingleTrack>;
+    World<BehaviorSet<RuledActions, Intersection, HeadwayHypotheses<Intersection>>, InterpolateExecution, SingleTrack>;
 using RuledSearch = Mcts<Ruled>;
-using RuledLearning = Mcts<Ruled, Actions, TrafficReward, HeadwayHypotheses<Intersection>>;
+using RuledLearning = Mcts<Ruled, RuledActions, TrafficReward, HeadwayHypotheses<Intersection>>;
 using RuledTree = PolicyTreePlanner<Ruled>;
 
 template <class Planner = RuledSearch>
@@ -220,15 +223,15 @@ TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, 
       count, [&](std::uint32_t number) { return site.sample(3, number); },
       [](auto& spec) {
         if (std::holds_alternative<NoGoal>(spec.goal.given())) return false;
-        double const speed = std::get<Mobil>(spec.behavior.given()).idm.desired_speed;
+        double const speed = std::get<Mobil>(spec.behavior.given()).law.desired_speed;
         if constexpr (std::is_same_v<Planner, Frenet>) {
           Planner planner;
           planner.desired_speed = speed;
           spec.behavior = planner;
         } else {
           auto planner = ruled_search();
-          planner.reward.desired_speed = planner.actions.driver.idm.desired_speed =
-              planner.actions.macro.idm.desired_speed = speed;
+          planner.reward.desired_speed = planner.actions.driver.law.desired_speed =
+              planner.actions.macro.law.desired_speed = speed;
           spec.behavior = planner;
         }
         return true;
@@ -254,7 +257,7 @@ TEST_CASE_TEMPLATE(
               planner = ruled_search<Planner>();
               planner.reward.desired_speed = 10.0;
             }
-            planner.actions.driver.idm.desired_speed = planner.actions.macro.idm.desired_speed = 10.0;
+            planner.actions.driver.law.desired_speed = planner.actions.macro.law.desired_speed = 10.0;
             spec.behavior = planner;
             return true;
           });

@@ -205,7 +205,7 @@ World traffic(std::uint64_t seed, Planner const& planner, typename World::Observ
     double const desired = Uniform{6.0, 15.0}(random), s = 20.0 + 40.0 * (i / 2) + Uniform{0.0, 12.0}(random);
     world.add({.position = place(i % 2 == 0 ? s : s + (s > 70.0 ? 25.0 : 0.0), i % 2 == 0 ? -1.75 : -5.25),
                .speed = 0.8 * desired,
-               .behavior = IdmClassic{.desired_speed = desired}});
+               .behavior = IdmClassic{.law = {.desired_speed = desired}}});
   }
   return world;
 }

@@ -12,7 +12,7 @@ TEST_CASE("it brakes in time for a bend, whatever the score") {
                                     .sections = {{.right = map::equal_lanes(1)}}});
   for (double const comfortable : {2.5, 50.0}) {
     Proposal planner;
-    planner.driver.driver.rules.lateral_acceleration = comfortable;
+    planner.driver.heeds.get<Bends>().lateral_acceleration = comfortable;
     planner.scoring.comfort = 0.0;
     CandidateSim world(map);
     world.add({.position = {20, -1.75}, .speed = 14, .behavior = planner});
@@ -32,8 +32,7 @@ TEST_CASE("it brakes in time for a bend, whatever the score") {
 }
 
 TEST_CASE("it stops once at a stop sign, and remembers that it did") {
-  Proposal planner;
-  planner.driver.driver.rules.obey_signals = true;
+  Proposal const planner;
   CandidateSim world(support::road_with_signal("206"));
   world.add({.position = {100, -1.75}, .speed = 12, .behavior = planner});
   int stops = 0;
@@ -62,8 +61,9 @@ TEST_CASE("it passes a standing vehicle in the lane beside, and waits with room 
     world.add({.position = {200, -5.25}, .speed = 0, .behavior = ConstantAcceleration{}});
     double const first = spacing < 100.0 ? 140.0 : -1e3;
     for (double x = first; x > 0.0; x -= spacing)
-      world.add(
-          {.position = {x, -1.75}, .speed = 15, .behavior = IdmClassic{.desired_speed = 15, .time_headway = 1.0}});
+      world.add({.position = {x, -1.75},
+                 .speed = 15,
+                 .behavior = IdmClassic{.law = {.desired_speed = 15, .time_headway = 1.0}}});
     double slowest = 1e9, closest = 1e9, hardest = 0.0;
     for (int i = 0; i < 250 && world.state(ego).x < 260.0; ++i) {
       drive(world, 1);
@@ -86,8 +86,9 @@ TEST_CASE("it changes into the lane of its goal, for which nobody has to brake h
     auto const left = map->find_lane("1", 500.0, -1);
     world.add({.position = {40, -5.25}, .speed = 12.0, .behavior = Proposal{}, .goal = ReachLane{left, 500.0}});
     for (double x = 190.0; x > 0.0; x -= gap)
-      world.add(
-          {.position = {x, -1.75}, .speed = 15, .behavior = IdmClassic{.desired_speed = 16, .time_headway = 1.0}});
+      world.add({.position = {x, -1.75},
+                 .speed = 15,
+                 .behavior = IdmClassic{.law = {.desired_speed = 16, .time_headway = 1.0}}});
     double hardest = 0.0;
     for (int i = 0; i < 200 && !world.reached_goal(world.slot_of(ego)); ++i) {
       drive(world, 1);
@@ -124,9 +125,9 @@ TEST_CASE("a change under way is the first proposal, and goes on if nothing is b
   auto memory = Proposal::Memory{};
   world.set_state(ego, {.x = 100, .y = -4.5, .heading = 0.08, .speed = 12.0});
   auto const at = world.record(ego).lane;
-  memory.lane.change = {world.observe(ego).corridor().pieces[at.piece].left, 30.0f, 0.0f};
+  memory.lateral.change = {world.observe(ego).corridor().pieces[at.piece].left, 30.0f, 0.0f};
   auto const report = report_of(Proposal{}, world, memory);
-  CHECK(report.details[0].towards == memory.lane.change.target);
+  CHECK(report.details[0].towards == memory.lateral.change.target);
   CHECK(report.details[0].left);
   CHECK(report.details[0].changes);
   CHECK(report.chosen == 0);

@@ -13,9 +13,8 @@
 #include <pugixml.hpp>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -527,7 +526,7 @@ TEST_CASE("an agent that is replaced starts in its recorded state, at once or wh
   auto const traffic = cars();
   auto const recorded = recorded_scenario<Sim>(traffic, {}, [](Track const& track) -> std::optional<Sim::Behavior> {
     if (track.type == TrackType::pedestrian) return std::nullopt;
-    return IdmClassic{.desired_speed = 5.0};
+    return IdmClassic{.law = {.desired_speed = 5.0}};
   });
   REQUIRE(recorded.later.size() == 1);
   CHECK(recorded.later[0].time == 2.0);
@@ -551,7 +550,7 @@ TEST_CASE("a replaced agent's goal is where its track ends, and its route the la
   auto& changing = traffic.tracks[0];
   for (auto& state : changing.states) state.y -= std::min(3.5, 0.7 * state.time);
   auto const replace_7 = [](Track const& track) {
-    return track.id == 7 ? std::optional<Sim::Behavior>(IdmClassic{.desired_speed = 10.0}) : std::nullopt;
+    return track.id == 7 ? std::optional<Sim::Behavior>(IdmClassic{.law = {.desired_speed = 10.0}}) : std::nullopt;
   };
   auto const recorded = recorded_scenario<Sim>(traffic, {.ego = 7}, replace_7);
   CHECK(recorded.scenario.ego == AgentId{7});
@@ -632,7 +631,7 @@ TEST_CASE("the route of a track on lanelets counts lanes side by side once") {
   track.states.clear();
   for (int k = 0; k <= 150; ++k) track.states.push_back({0.1 * k, 5.0 + k, k > 30 && k < 60 ? -3.5 : 0.0, 0.0, 10.0});
   auto const recorded = recorded_scenario<Sim>(traffic, {.ego = track.id}, [](Track const&) {
-    return std::optional<Sim::Behavior>(IdmClassic{.desired_speed = 10.0});
+    return std::optional<Sim::Behavior>(IdmClassic{.law = {.desired_speed = 10.0}});
   });
   auto const& route = recorded.scenario.agents.at(0).route;
   REQUIRE(route);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/benchmark/statistics.hpp"
 #include "cambium/core/distributions.hpp"
@@ -42,7 +42,7 @@ Stream drive_highway(double per_hour, std::uint64_t seed) {
     auto const driver = kind < 0.25   ? presets::timid<Mobil>()
                         : kind < 0.75 ? presets::normal<Mobil>()
                                       : presets::aggressive<Mobil>();
-    return Highway::AgentSpec{.speed = driver.idm.desired_speed,
+    return Highway::AgentSpec{.speed = driver.law.desired_speed,
                               .shape = geometry::car(),
                               .behavior = driver,
                               .route = random_route(*road, source.lane, random, length)};
@@ -145,7 +145,7 @@ Gaps turn_in(double side, std::uint64_t seed) {
     return JunctionSite::World::AgentSpec{
         .speed = 10.0,
         .shape = geometry::car(),
-        .behavior = Intersection{.idm = {.desired_speed = 12.0 + 3.0 * uniform01(random)}},
+        .behavior = Intersection{.law = {.desired_speed = 12.0 + 3.0 * uniform01(random)}},
         .route = routes[static_cast<std::size_t>(at - sources.begin())]};
   };
   struct Driver {

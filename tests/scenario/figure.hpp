@@ -10,11 +10,9 @@ template <class World>
 double figure_of(cambium::Scenario<World> const& scenario) {
   auto const driver = [](auto const& behavior) {
     double sum = 0.0;
-    if constexpr (requires { behavior.politeness; }) sum = 17.0 * behavior.politeness + 19.0 * behavior.bias;
-    if constexpr (requires { behavior.idm; })
-      return sum + behavior.idm.desired_speed + 2.0 * behavior.idm.time_headway;
-    else
-      return sum + behavior.desired_speed + 2.0 * behavior.time_headway;
+    if constexpr (requires { behavior.lateral.rule; })
+      sum = 17.0 * behavior.lateral.rule.politeness + 19.0 * behavior.lateral.rule.bias;
+    return sum + behavior.law.desired_speed + 2.0 * behavior.law.time_headway;
   };
   double sum = static_cast<double>(index_of(scenario.ego)) + 0.5 * static_cast<double>(scenario.controlled.size());
   for (std::size_t i = 0; i < scenario.agents.size(); ++i) {

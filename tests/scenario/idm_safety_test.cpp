@@ -34,7 +34,8 @@ Sim sample(Sim const& empty, cb::map::LaneCorridor const& corridor, Ahead ahead,
     Sim::AgentSpec spec{
         .position = pose.position(), .heading = pose.heading, .speed = v.speed, .shape = v.shape, .behavior = v.driver};
     if (i == 0 && ahead == Ahead::brakes)
-      spec.behavior = cb::ConstantAcceleration{.acceleration = cb::Uniform{v.driver.lowest_acceleration, -0.5}(random)};
+      spec.behavior =
+          cb::ConstantAcceleration{.acceleration = cb::Uniform{v.driver.law.lowest_acceleration, -0.5}(random)};
     if (i == 0 && ahead == Ahead::obstacle) {
       double const headway = cb::Uniform{0.8, 3.0}(random);
       auto const at = v.s + v.shape.front + cb::LaneTraffic::safe_gap(v.driver, v.speed, 0.0, headway);

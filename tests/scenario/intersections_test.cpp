@@ -14,7 +14,7 @@
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "../support/scale.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -168,7 +168,7 @@ TEST_CASE("who reaches the end of its route sees a vehicle beyond it that still 
       auto const add = [&](LaneId where, double s, double speed, double desired) {
         return world.add({.position = site.map->lane(where).path.pose(s).position(),
                           .speed = speed,
-                          .behavior = Intersection{.idm = {.desired_speed = desired}},
+                          .behavior = Intersection{.law = {.desired_speed = desired}},
                           .route = map::Route{{where}, site.map->lane(where).length()}});
       };
       auto const behind = add(entrance, lane.length() - 60.0, 10.0, 10.0);

@@ -41,7 +41,7 @@ Flow saturate(JunctionSite const& site, double truck_share, bool lights, double 
     bool const fits = fits_route(*site.map, route, geometry::truck());  // a roundabout's ring is too narrow
     bool const large = uniform01(random) < truck_share && fits;
     auto driver = drivers.size() > 1 ? drivers[random() % drivers.size()] : drivers.front();
-    driver.idm.desired_speed = 10.0 + 4.0 * uniform01(random);
+    driver.law.desired_speed = 10.0 + 4.0 * uniform01(random);
     return JunctionSite::World::AgentSpec{
         .speed = 10.0, .shape = large ? geometry::truck() : geometry::car(), .behavior = driver, .route = route};
   };

@@ -9,7 +9,7 @@
 
 #include "../behavior/lane_traffic_fixtures.hpp"
 #include "../support/scale.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/observer/delayed.hpp"
 #include "cambium/observer/observer_set.hpp"
@@ -72,8 +72,8 @@ Drive drive(World& world, int steps) {
 }
 
 World::Behavior driver(bool by_rule, double desired_speed) {
-  if (by_rule) return cb::LaneChangeRuleBased{.idm = {.desired_speed = desired_speed}};
-  return cb::Mobil{.idm = {.desired_speed = desired_speed}};
+  if (by_rule) return cb::LaneChangeRuleBased{.law = {.desired_speed = desired_speed}};
+  return cb::Mobil{.law = {.desired_speed = desired_speed}};
 }
 
 /// Traffic on these lanes from their begin on: speeds, gaps and sizes drawn, gaps so that nobody need brake hard.
@@ -150,9 +150,9 @@ TEST_CASE("nobody collides in slow traffic with many trucks and buses") {
       int const lanes = seed % 2 == 0 ? 3 : 4;
       World world(support::straight_road(lanes, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
       if (by_rule)
-        fill_slow(world, lanes, seed, [&](bool is_long) { return cb::LaneChangeRuleBased{.idm = idm(is_long)}; });
+        fill_slow(world, lanes, seed, [&](bool is_long) { return cb::LaneChangeRuleBased{.law = idm(is_long)}; });
       else
-        fill_slow(world, lanes, seed, [&](bool is_long) { return cb::Mobil{.idm = idm(is_long)}; });
+        fill_slow(world, lanes, seed, [&](bool is_long) { return cb::Mobil{.law = idm(is_long)}; });
       CAPTURE(by_rule);
       CAPTURE(seed);
       changes += drive(world, 450).changes;
@@ -200,7 +200,7 @@ TEST_CASE("zip merges come off without collisions where drivers see with errors,
         world.add({.position = pose.position(),
                    .heading = pose.heading,
                    .speed = 4.0,
-                   .behavior = cb::ZipMerge{.idm = {.desired_speed = 12.0 + 4.0 * cb::uniform01(random)}},
+                   .behavior = cb::ZipMerge{.law = {.desired_speed = 12.0 + 4.0 * cb::uniform01(random)}},
                    .observer = sight.observer});
         s -= 7.0 + cb::uniform01(random);
       }
@@ -223,10 +223,10 @@ TEST_CASE("nobody without a goal passes the slow in an exit lane, and then stand
       auto scenario = site.sample(771, static_cast<std::uint32_t>(number));
       for (auto& spec : scenario.agents) {
         auto driver = *std::get_if<cb::Mobil>(&spec.behavior.given());
-        driver.keep_right = keeps_right;
-        if (!keeps_right) driver.bias = 0.0;
-        if (spec.shape.length() > 7.0 || number % 3 == index_of(*spec.id) % 3) driver.idm.desired_speed *= 0.4;
-        spec.speed = std::min(spec.speed, driver.idm.desired_speed);
+        driver.lateral.rule.keep_right = keeps_right;
+        if (!keeps_right) driver.lateral.rule.bias = 0.0;
+        if (spec.shape.length() > 7.0 || number % 3 == index_of(*spec.id) % 3) driver.law.desired_speed *= 0.4;
+        spec.speed = std::min(spec.speed, driver.law.desired_speed);
         spec.behavior = driver;
         if (number % 2 == 0) spec.goal = cb::NoGoal{};
       }

@@ -18,7 +18,7 @@ namespace {
 
 using Sim = World<BehaviorSet<Mobil, IdmClassic, Intersection>, InterpolateExecution, SingleTrack>;
 using Flow = LaneFlow<Sim>;
-using Driver = DriverShare<Sim>;
+using FlowDriver = DriverShare<Sim>;
 using Recipe = ScenarioRecipe<Sim>;
 
 std::vector<Scenario<Sim>> drawn(std::string const& map, std::vector<Flow> flows, std::uint32_t scenarios = 40,
@@ -62,17 +62,18 @@ TEST_CASE("the simplest flow spreads vehicles uniformly over a lane") {
 }
 
 TEST_CASE("kinds of drivers have their shares, vehicles and drawn parameters") {
-  auto const scenarios = drawn(
-      "highway.xodr", {Flow{.from = highway_lane(-2),
-                            .traffic = {.end = 600.0, .speed = Uniform{18.0, 22.0}, .mix = {.truck_share = 0.0}},
-                            .drivers = {Driver{.share = 3.0,
-                                               .behavior = Mobil{},
-                                               .drawn = {{"idm.desired_speed", ClippedNormal{28.0, 3.0, 24.0, 33.0}},
-                                                         {"politeness", Uniform{0.1, 0.2}}}},
-                                        Driver{.share = 1.0,
-                                               .vehicle = Driver::Vehicle::truck,
-                                               .behavior = IdmClassic{.desired_speed = 22.0}}},
-                            .controlled_share = 0.25}});
+  auto const scenarios =
+      drawn("highway.xodr",
+            {Flow{.from = highway_lane(-2),
+                  .traffic = {.end = 600.0, .speed = Uniform{18.0, 22.0}, .mix = {.truck_share = 0.0}},
+                  .drivers = {FlowDriver{.share = 3.0,
+                                         .behavior = Mobil{},
+                                         .drawn = {{"law.desired_speed", ClippedNormal{28.0, 3.0, 24.0, 33.0}},
+                                                   {"lateral.rule.politeness", Uniform{0.1, 0.2}}}},
+                              FlowDriver{.share = 1.0,
+                                         .vehicle = FlowDriver::Vehicle::truck,
+                                         .behavior = IdmClassic{.law = {.desired_speed = 22.0}}}},
+                  .controlled_share = 0.25}});
   int cars = 0, trucks = 0, controlled = 0;
   double sum = 0.0, lowest = 1e9, highest = 0.0;
   for (auto const& scenario : scenarios) {
@@ -81,15 +82,15 @@ TEST_CASE("kinds of drivers have their shares, vehicles and drawn parameters") {
       if (auto const* const mobil = std::get_if<Mobil>(&agent.behavior)) {
         ++cars;
         CHECK(agent.shape == geometry::car());
-        CHECK(mobil->politeness >= 0.1);
-        CHECK(mobil->politeness <= 0.2);
-        sum += mobil->idm.desired_speed;
-        lowest = std::min(lowest, mobil->idm.desired_speed);
-        highest = std::max(highest, mobil->idm.desired_speed);
+        CHECK(mobil->lateral.rule.politeness >= 0.1);
+        CHECK(mobil->lateral.rule.politeness <= 0.2);
+        sum += mobil->law.desired_speed;
+        lowest = std::min(lowest, mobil->law.desired_speed);
+        highest = std::max(highest, mobil->law.desired_speed);
       } else {
         ++trucks;
         CHECK(agent.shape == geometry::truck());
-        CHECK(std::get<IdmClassic>(agent.behavior).desired_speed == 22.0);
+        CHECK(std::get<IdmClassic>(agent.behavior).law.desired_speed == 22.0);
       }
     }
   }
@@ -120,7 +121,7 @@ TEST_CASE("flows lead from sources to sinks, named by lane or by point; nobody o
     RandomStream random(2, static_cast<std::uint32_t>(index_of(source.lane)), 0);
     auto const route = random_route(*map, source.lane, random);
     Flow flow{.traffic = {.end = 1000.0, .speed = Uniform{3.0, 12.0}},
-              .drivers = {Driver{.behavior = Intersection{.idm = {.time_headway = 1.2}}}},
+              .drivers = {FlowDriver{.behavior = Intersection{.law = {.time_headway = 1.2}}}},
               .ego = by_lane.empty() ? Flow::Ego::random : Flow::Ego::none};
     flow.from = route.lanes.front();
     flow.to = route.lanes.back();
@@ -191,7 +192,7 @@ TEST_CASE("what a flow cannot do is an error that says where and what to do") {
   CHECK(refusal("highway.xodr", {Flow{.from = highway_lane(-4)}}) ==
         "recipe.flows[0].from: there is no such lane for vehicles; examples/run map FILE lists the lanes");
   CHECK(refusal("highway.xodr", {Flow{.from = LaneId{77}}}).find("there is no such lane") != std::string::npos);
-  CHECK(refusal("highway.xodr", {Flow{.from = from, .drivers = {Driver{.share = 0.0, .behavior = Mobil{}}}}}) ==
+  CHECK(refusal("highway.xodr", {Flow{.from = from, .drivers = {FlowDriver{.share = 0.0, .behavior = Mobil{}}}}}) ==
         "recipe.flows[0]: has only drivers whose share is 0; give one of them a share");
   auto const exit = support::own_map("highway_exit.xodr");
   CHECK(refusal("highway_exit.xodr",
@@ -206,15 +207,15 @@ TEST_CASE("what a flow cannot do is an error that says where and what to do") {
                 {Flow{.from = from, .ego = Flow::Ego::first}, Flow{.from = from, .ego = Flow::Ego::last}}) ==
         "recipe.flows[1]: is the second flow with an ego; let one flow have it");
   auto const with = [&](DrawnParameter const& parameter) {
-    return std::vector<Flow>{Flow{.from = from, .drivers = {Driver{.behavior = Mobil{}, .drawn = {parameter}}}}};
+    return std::vector<Flow>{Flow{.from = from, .drivers = {FlowDriver{.behavior = Mobil{}, .drawn = {parameter}}}}};
   };
-  CHECK(refusal("highway.xodr", with({"idm.desird_speed", Uniform{20.0, 30.0}})) ==
-        "recipe.flows[0].drivers[0].drawn[0]: idm.desird_speed: there is no number of that key; is it desired_speed?");
-  auto second = with({"idm.desired_speed", Uniform{20.0, 30.0}});
+  CHECK(refusal("highway.xodr", with({"law.desird_speed", Uniform{20.0, 30.0}})) ==
+        "recipe.flows[0].drivers[0].drawn[0]: law.desird_speed: there is no number of that key; is it desired_speed?");
+  auto second = with({"law.desired_speed", Uniform{20.0, 30.0}});
   second[0].drivers[0].drawn.push_back({"politness", Uniform{0.0, 1.0}});
   CHECK(refusal("highway.xodr", second).find("recipe.flows[0].drivers[0].drawn[1]: politness: there is no number") ==
         0);
   CHECK(
-      refusal("highway.xodr", with({"idm.time_headway", ClippedNormal{1.0, 0.5}})).find("idm.time_headway: is -inf") !=
+      refusal("highway.xodr", with({"law.time_headway", ClippedNormal{1.0, 0.5}})).find("law.time_headway: is -inf") !=
       std::string::npos);
 }

@@ -32,10 +32,10 @@ TEST_CASE("vehicles stand on the stretch from its front to its rear, and what is
     CHECK(vehicles.front().s + vehicles.front().shape.front == doctest::Approx(400.0));
     CHECK(vehicles.back().s - vehicles.back().shape.rear >= 30.0);
     for (auto const& v : vehicles) {
-      CHECK(v.speed <= std::min(traffic.speed.highest(), v.driver.desired_speed));
+      CHECK(v.speed <= std::min(traffic.speed.highest(), v.driver.law.desired_speed));
       CHECK(v.speed >= traffic.speed.lowest());
-      CHECK(v.driver.desired_speed <= traffic.desired_speed.highest());
-      CHECK(v.driver.desired_speed >= 0.85 * traffic.desired_speed.lowest());
+      CHECK(v.driver.law.desired_speed <= traffic.desired_speed.highest());
+      CHECK(v.driver.law.desired_speed >= 0.85 * traffic.desired_speed.lowest());
       CHECK_NOTHROW(cb::check_parameters(v.driver));
       slowest = std::min(slowest, v.speed);
       fastest = std::max(fastest, v.speed);
@@ -53,8 +53,8 @@ TEST_CASE("every gap lets the follower keep its headway and brake comfortably to
     for (std::size_t i = 1; i < vehicles.size(); ++i) {
       auto const &follower = vehicles[i], &leader = vehicles[i - 1];
       double const closing = std::max(0.0, follower.speed - leader.speed);
-      double const braking_way = closing * closing / (2 * follower.driver.comfortable_deceleration);
-      double const headway = (gap(follower, leader) - follower.driver.minimum_gap - braking_way) / follower.speed;
+      double const braking_way = closing * closing / (2 * follower.driver.law.comfortable_deceleration);
+      double const headway = (gap(follower, leader) - follower.driver.law.minimum_gap - braking_way) / follower.speed;
       CHECK(headway >= traffic.headway.lowest() - 1e-9);
       CHECK(headway <= traffic.headway.highest() + 1e-9);
     }
@@ -62,7 +62,7 @@ TEST_CASE("every gap lets the follower keep its headway and brake comfortably to
 }
 
 TEST_CASE("the safe gap is the minimum gap at rest, and grows with headway, speed and closing speed") {
-  cb::IdmClassic const driver{.minimum_gap = 2.0, .comfortable_deceleration = 2.0};
+  cb::IdmClassic const driver{.law = {.minimum_gap = 2.0, .comfortable_deceleration = 2.0}};
   CHECK(LaneTraffic::safe_gap(driver, 0.0, 0.0, 1.0) == 2.0);
   CHECK(LaneTraffic::safe_gap(driver, 10.0, 10.0, 1.5) == doctest::Approx(17.0));
   CHECK(LaneTraffic::safe_gap(driver, 10.0, 20.0, 1.5) == doctest::Approx(17.0));

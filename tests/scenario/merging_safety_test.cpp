@@ -11,11 +11,8 @@
 
 #include "../support/maps.hpp"
 #include "../support/scale.hpp"
-#include "cambium/behavior/following/adaptive_cruise_control.hpp"
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
-#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/law/acc.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/scenario/merging_site.hpp"
@@ -32,11 +29,11 @@ Behavior driver(IdmClassic const& idm) {
     return idm;
   } else {
     Behavior behavior;
-    behavior.idm = {.desired_speed = idm.desired_speed,
-                    .time_headway = idm.time_headway,
-                    .minimum_gap = idm.minimum_gap,
-                    .maximum_acceleration = idm.maximum_acceleration,
-                    .comfortable_deceleration = idm.comfortable_deceleration};
+    behavior.law = {.desired_speed = idm.law.desired_speed,
+                    .time_headway = idm.law.time_headway,
+                    .minimum_gap = idm.law.minimum_gap,
+                    .maximum_acceleration = idm.law.maximum_acceleration,
+                    .comfortable_deceleration = idm.law.comfortable_deceleration};
     return behavior;
   }
 }

@@ -23,7 +23,7 @@ double amplitude(ring::Sim const& world, int m) {
 }
 
 /// Rate [1/s] at which that wave grows, from small beginnings.
-double measured_growth(cb::RingRoad const& road, cb::IdmParameters const& driver, int vehicles, int m, double step) {
+double measured_growth(cb::RingRoad const& road, cb::Idm const& driver, int vehicles, int m, double step) {
   auto const wave = [=](int i) { return 0.05 * std::sin(2 * cb::geometry::pi * m * i / vehicles); };
   auto world = ring::start(road, driver, vehicles, wave, [](int) { return 0.0; });
   ring::measure(world, road.length, 100.0, step);  // the other root, which decays at once, is gone
@@ -91,7 +91,7 @@ TEST_CASE("small waves on a ring grow or decay at the rate of linear theory") {
 TEST_CASE("string stable traffic keeps to the curve of equilibrium of flow and density, and no wave comes up") {
   auto const road = cb::make_ring_road(2000.0, 50);
   struct Case {
-    cb::IdmParameters driver;
+    cb::Idm driver;
     int vehicles;
   };
   for (auto const& one :

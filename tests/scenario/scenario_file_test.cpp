@@ -142,7 +142,8 @@ TEST_CASE("an error in a scenario file says where it is and what to do") {
       refusal(with_agents(R"({"position": {"x": 20, "y": -5.25}, "behavior": "imd"})")) ==
       "f.json: scenario_set.scenarios[0].agents[0].behavior: there is no \"imd\" here; There are: idm_classic, mobil");
   CHECK(refusal(with_agents(R"({"position": {"x": 20, "y": -5.25}, "behavior": {"mobil": {"politness": 1}}})")) ==
-        "f.json: scenario_set.scenarios[0].agents[0].behavior.mobil: has no field \"politness\"; is it politeness?");
+        "f.json: scenario_set.scenarios[0].agents[0].behavior.mobil: has no field \"politness\"; is it "
+        "lateral.rule.politeness?");
   CHECK(refusal(with_agents(good + "," + good)).find("f.json: scenarios[0]: agent 0: ") == 0);
   CHECK(refusal(with_agents(good + R"(,{"id": 1, "position": {"x": 22, "y": -5.25}})")) ==
         "f.json: scenarios[0]: agents 0 and 1 overlap at the start; move one of them");
@@ -240,7 +241,7 @@ TEST_CASE("the example in the README is a scenario file") {
 TEST_CASE("flows of a file draw dense traffic by lane, the same each time") {
   std::string const text = R"({"recipes": [{"map_file": "highway.xodr", "scenarios": 30, "seed": 8, "flows": [
     {"from": "1/0/-1", "traffic": {"begin": 0, "end": 300, "mix": {"truck_share": 0}}, "ego": "middle",
-     "drivers": [{"share": 3, "behavior": {"mobil": {"idm": {"desired_speed": 25}}}}, {"share": 1, "behavior": "idm_classic"}]},
+     "drivers": [{"share": 3, "behavior": {"mobil": {"law": {"desired_speed": 25}}}}, {"share": 1, "behavior": "idm_classic"}]},
     {"from": "1/0/-2", "traffic": {"begin": 0, "end": 300, "mix": {"truck_share": 0.5}}, "controlled_share": 1}]}]})";
   auto const set = parse_scenarios<Small>(text, maps);
   CHECK(parse_scenarios<Small>(text, maps).hash() == set.hash());

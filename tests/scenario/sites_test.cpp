@@ -11,7 +11,7 @@
 #include <variant>
 
 #include "../support/maps.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/off_road.hpp"
 #include "cambium/scenario/highway_site.hpp"
@@ -172,7 +172,7 @@ TEST_CASE("who insists at the merge is drawn apart from the traffic, and stays t
     REQUIRE(mixed.agents.size() == yielding.agents.size());
     for (std::size_t i = 0; i < mixed.agents.size(); ++i) {
       CHECK(mixed.agents[i].position == yielding.agents[i].position);
-      bool const insists = std::get<IdmClassic>(mixed.agents[i].behavior).rules.merging == Merging::ignored;
+      bool const insists = std::get<IdmClassic>(mixed.agents[i].behavior).lateral.merging == Merging::ignored;
       insisting += insists ? '!' : '.';
     }
     insisting += ' ';

@@ -10,7 +10,7 @@
 
 #include "corpus_lanes.hpp"
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/execution/lqr.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/evaluation/collision.hpp"
@@ -29,7 +29,7 @@ Sim::AgentSpec next_vehicle(Map const& map, TrafficSource const& source, RandomS
   bool const is_truck = uniform01(random) < 0.35;
   return {.speed = 15.0,
           .shape = is_truck ? geometry::truck() : geometry::car(),
-          .behavior = IdmClassic{.desired_speed = 12.0 + 6.0 * uniform01(random)},
+          .behavior = IdmClassic{.law = {.desired_speed = 12.0 + 6.0 * uniform01(random)}},
           .route = random_route(map, source.lane, random, 3000.0)};
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../viewer/browser.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/benchmark/run_on_processes.hpp"
 #include "cambium/benchmark/runner.hpp"
 #include "cambium/cambium.hpp"
@@ -102,7 +102,7 @@ TEST_CASE("a run that ends with an error is kept from just before it") {
 TEST_CASE("a benchmark writes snapshots beside the replays of failures, also from other processes") {
   auto const set = support::merging_set<Traffic>(3);
   std::vector const all{contender<Traffic>(Tired{}, "tired", freeze_run), contender<Traffic>(Tired{}, "plain"),
-                        contender<Traffic>(IdmClassic{.desired_speed = 22.0}, "idm", freeze_run)};
+                        contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}}, "idm", freeze_run)};
   std::vector<std::string> first;
   for (bool const in_processes : {false, true}) {
     browser::TemporaryFolder const folder;

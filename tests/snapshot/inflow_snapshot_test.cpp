@@ -52,7 +52,7 @@ struct Run {
       if (source.way) return {.speed = 1.2, .shape = geometry::pedestrian(), .behavior = Pedestrian{}};
       return {.speed = 15.0,
               .acceleration = 0.01 * much,
-              .behavior = IdmClassic{.desired_speed = 12.0 + 6.0 * uniform01(random) + much},
+              .behavior = IdmClassic{.law = {.desired_speed = 12.0 + 6.0 * uniform01(random) + much}},
               .route = random_route(*map, source.lane, random, 3000.0)};
     });
     REQUIRE(world.step(0.2));
@@ -123,28 +123,28 @@ TEST_CASE("an inflow is restored only into one with the same sources, and else k
 namespace {
 
 /// A driver before and after its version changed.
-struct Driver : IdmClassic {
-  static constexpr char const* name = "driver";
+struct OldDriver : IdmClassic {
+  static constexpr char const* name = "old_driver";
   static constexpr auto parameters() { return IdmClassic::parameters(); }
 };
-struct NewDriver : Driver {
+struct NewDriver : OldDriver {
   static constexpr unsigned version = 1;
-  void upgrade(unsigned) { desired_speed += 1.0; }
+  void upgrade(unsigned) { law.desired_speed += 1.0; }
 };
-template <class Driver>
-using Traffic = World<BehaviorSet<Driver>, InterpolateExecution, SingleTrack>;
+template <class B>
+using Traffic = World<BehaviorSet<B>, InterpolateExecution, SingleTrack>;
 
 }  // namespace
 
 TEST_CASE("an inflow of older drivers is upgraded, and still restored only into one with the same sources") {
   auto const road = support::straight_road(2, 300.0);
   auto const sources = find_sources(*road);
-  TrafficInflow<Traffic<Driver>> old(*road, {sources[0]}, 1);
-  Traffic<Driver> world(road, {});
+  TrafficInflow<Traffic<OldDriver>> old(*road, {sources[0]}, 1);
+  Traffic<OldDriver> world(road, {});
   auto const begin = road->lane(sources[0].lane).path.pose(3.0);
   world.add({.position = begin.position()});  // in the way
   old.enter(world, [](TrafficSource const&, RandomStream&) {
-    return Traffic<Driver>::AgentSpec{.behavior = Driver{{.desired_speed = 9.0}}};
+    return Traffic<OldDriver>::AgentSpec{.behavior = OldDriver{{.law = {.desired_speed = 9.0}}}};
   });
   REQUIRE(old.waiting(0) == 1);
   auto const bytes = to_snapshot({}, old);
@@ -153,28 +153,33 @@ TEST_CASE("an inflow of older drivers is upgraded, and still restored only into 
   from_snapshot(bytes, "old", same);
   Traffic<NewDriver> free(road, {});
   REQUIRE(same.enter(free, [](auto const&...) { return Traffic<NewDriver>::AgentSpec{}; }).size() == 1);
-  CHECK(std::get<NewDriver>(free.roster().agents[Slot{}].behavior).desired_speed == 10.0);
+  CHECK(std::get<NewDriver>(free.roster().agents[Slot{}].behavior).law.desired_speed == 10.0);
 }
 
 // As with worlds, in snapshot_test.cpp: files of each version of the format stay here for good.
 TEST_CASE("inflows of earlier versions load") {
   auto const road = support::straight_road(2, 300.0);
-  write_golden("inflow_1", 2, [&] {
+  write_golden("inflow_2", 2, [&] {
     Run run(road, 7);
     for (int i = 0; i < 60; ++i) run.step();
     return run.inflow;
   });
-  int const files = for_each_golden("inflow_", [&](std::string const& path) {
+  int const files = for_each_golden("inflow_2", [&](std::string const& path) {
     Run run(road, 1);
     load_snapshot(path, run.inflow);
     CHECK(run.inflow.waiting(0) == golden_waiting);
     run.step();  // whoever waits may enter an empty world
     CHECK(run.inflow.waiting(0) == golden_waiting - 1);
     CHECK(run.world.size() == 2);
-    CHECK(std::get<IdmClassic>(run.world.roster().agents[Slot{}].behavior).desired_speed ==
+    CHECK(std::get<IdmClassic>(run.world.roster().agents[Slot{}].behavior).law.desired_speed ==
           doctest::Approx(golden_speed));
   });
   CHECK(files >= 2);
+  CHECK(for_each_golden("inflow_1", [&](std::string const& path) {
+          Run run(road, 1);
+          says("(law, lateral, heeds); read it with the program that wrote it",
+               [&] { load_snapshot(path, run.inflow); });
+        }) == 2);
 }
 
 TEST_CASE("a random stream goes on where it was, in the middle of a block, too") {

@@ -366,13 +366,13 @@ TEST_CASE("a kept tree takes a few hundred bytes a node") {
 TEST_CASE("kept trees of earlier versions load") {
   using Tree = detail::ArchivedSearch<Usual::Workspace::Search>;
   auto const map = support::straight_road(2, 600.0);
-  write_golden("tree_1", 2, [&] {
+  write_golden("tree_2", 2, [&] {
     Stack<Usual> stack{traffic(map, 0, 2)};
     stack.think(keeping<Usual>(60, 1));
     REQUIRE(stack.workspace.keep());
     return detail::archived_trees(*stack.workspace.kept());
   });
-  int const files = for_each_golden("tree_", [&](std::string const& path) {
+  int const files = for_each_golden("tree_2", [&](std::string const& path) {
     Tree parts;
     load_snapshot(path, parts);
     REQUIRE(parts.trees.size() == 1);
@@ -386,4 +386,8 @@ TEST_CASE("kept trees of earlier versions load") {
     CHECK(trees.searches()[0].tree().size() == golden_nodes);
   });
   CHECK(files >= 2);
+  CHECK(for_each_golden("tree_1", [&](std::string const& path) {
+          Tree parts;
+          says("law, heeds, course); read it with the program that wrote it", [&] { load_snapshot(path, parts); });
+        }) == 2);
 }

@@ -175,7 +175,7 @@ TEST_CASE("traffic of all models goes on bit by bit after it was saved and resto
     for (std::size_t i = 0; i < 14; ++i) {
       double const x = 15.0 + 22.0 * static_cast<double>(i / 2) + Uniform{-4.0, 4.0}(random);
       auto behavior = one_of<Sim::Behavior>(seed + i);
-      if (auto* const idm = std::get_if<IdmClassic>(&behavior)) idm->desired_speed = Uniform{5.0, 30.0}(random);
+      if (auto* const idm = std::get_if<IdmClassic>(&behavior)) idm->law.desired_speed = Uniform{5.0, 30.0}(random);
       world.add(
           {.position = {x, i % 2 == 0 ? -1.75 : -5.25}, .speed = Uniform{0.0, 15.0}(random), .behavior = behavior});
     }

@@ -25,9 +25,7 @@ constexpr std::size_t no_room = rooms.size();
 /// the headers that lie in the room itself.
 std::map<std::string, std::vector<std::string>> const families{
     {"map", {"road", "opendrive", "lanes", "routing", "corridor", "building", "lanelet"}},
-    {"behavior",
-     {"law", "following", "lane_change", "junction", "driver", "heed", "lateral", "safety", "human", "pedestrian",
-      "open_loop"}},
+    {"behavior", {"law", "driver", "heed", "lateral", "open_loop", "actions", "wrap", "pedestrian"}},
     {"evaluation", {"metrics", "rules"}},
     {"planner", {"search", "mcts", "frenet", "policy"}},
     {"scenario", {"dataset"}}};

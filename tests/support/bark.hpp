@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cambium/behavior/following/adaptive_cruise_control.hpp"
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/law/acc.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/dynamics/integration.hpp"
 
@@ -18,7 +18,7 @@ namespace cb = cambium;
 inline constexpr int substeps = 10;
 
 /// Acceleration [m/s^2]: IDM whose desired gap is not kept above the minimum gap, blended as by the ACC model.
-inline double acceleration(cb::IdmParameters const& p, double coolness, double speed, cb::Constraint const& leader) {
+inline double acceleration(cb::Idm const& p, double coolness, double speed, cb::Constraint const& leader) {
   if (leader.gap <= 0) return p.lowest_acceleration;
   double const desired_gap =
       p.minimum_gap + speed * p.time_headway +
@@ -47,7 +47,7 @@ template <class View>
 
 /// BARK's IDM, and with `coolness` its ACC model.
 struct Driver {
-  cb::IdmParameters idm{};
+  cb::Idm idm{};
   double coolness = 0.0;
 
   static constexpr char const* name = "bark_driver";
@@ -80,7 +80,7 @@ struct Driver {
 
 /// BARK's lane tracking: the same along, steered by Stanley's law.
 struct LaneTracking {
-  cb::IdmParameters idm{};
+  cb::Idm idm{};
 
   template <class View>
   [[nodiscard]] cb::Plan<View> plan(View const& view, cb::NoMemory&, double dt) const {
@@ -95,8 +95,8 @@ struct LaneTracking {
     for (int i = 0; i < substeps; ++i) {
       double const a = acceleration(idm, 0.0, start_speed, leader);
       auto const at = cb::front_axle(view.corridor().center, x, wheel_base, segment);
-      double const grip = std::atan2(steering.lateral_acceleration_limit * wheel_base, x.speed * x.speed);
-      double const angle = at.heading_error + std::atan2(-steering.cross_track_gain * at.offset, x.speed);
+      double const grip = std::atan2(steering.lateral.lateral_acceleration_limit * wheel_base, x.speed * x.speed);
+      double const angle = at.heading_error + std::atan2(-steering.lateral.cross_track_gain * at.offset, x.speed);
       auto const u = model.input({a, std::clamp(angle, -grip, grip)}, x);
       if (i == 0) plan.action = cb::action_of(u, {a, angle});
       advance(leader, start_speed, a, h);

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <variant>
 
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/scenario/merging_site.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 #include "maps.hpp"

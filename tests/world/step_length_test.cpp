@@ -15,7 +15,7 @@ std::vector<double> column(double dt, double duration) {
   Sim world(straight_road(1, 2000.0));
   for (int i = 0; i < 8; ++i) {
     cb::IdmClassic driver;
-    driver.desired_speed = 14 + i % 3;
+    driver.law.desired_speed = 14 + i % 3;
     Sim::AgentSpec spec{.position = {200.0 - 22.0 * i, -1.75}, .speed = 12.0, .behavior = driver};
     if (i == 0) spec.behavior = cb::ConstantAcceleration{.acceleration = -1.0};
     world.add(spec);

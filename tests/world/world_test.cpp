@@ -12,7 +12,7 @@
 
 #include "../support/error_of.hpp"
 
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
@@ -73,8 +73,8 @@ TEST_CASE("an agent that cannot enter is named, and the world stays as it was") 
       {{.position = on_road, .speed = 1e300}, "speed"},
       {{.position = on_road, .acceleration = 100.1}, "its acceleration is 100.1, not a number from -100 to 100"},
       {{.position = on_road, .acceleration = nan}, "acceleration"},
-      {{.position = on_road, .behavior = cb::IdmClassic{.desired_speed = nan}}, "desired_speed"},
-      {{.position = on_road, .behavior = cb::IdmClassic{.time_headway = -1}}, "time_headway"},
+      {{.position = on_road, .behavior = cb::IdmClassic{.law = {.desired_speed = nan}}}, "desired_speed"},
+      {{.position = on_road, .behavior = cb::IdmClassic{.law = {.time_headway = -1}}}, "time_headway"},
       {{.position = on_road, .shape = {0, 0, 0.9, 0.9}}, "no length"},
       {{.position = on_road, .shape = {3.6, 0.9, 0, 0}}, "no width"},
       {{.position = on_road, .shape = {1e9, 0, 0.9, 0.9}}, "shape.front"},
@@ -402,11 +402,11 @@ TEST_CASE("an agent that is re-routed in the middle of a lane change has forgott
       cb::World<cb::BehaviorSet<cb::Mobil, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
   World world(three_and_one());
   auto const id =
-      world.add({.position = {100, -8.75}, .speed = 20, .behavior = cb::Mobil{.idm = {.desired_speed = 25}}});
+      world.add({.position = {100, -8.75}, .speed = 20, .behavior = cb::Mobil{.law = {.desired_speed = 25}}});
   world.add({.position = {130, -8.75}, .speed = 5, .behavior = cb::ConstantAcceleration{}});
   int steps = 0;
-  while (!world.memory<cb::Mobil>(id).change.active() && steps++ < 100) REQUIRE(world.step(0.1));
-  REQUIRE(world.memory<cb::Mobil>(id).change.active());
+  while (!world.memory<cb::Mobil>(id).lateral.change.active() && steps++ < 100) REQUIRE(world.step(0.1));
+  REQUIRE(world.memory<cb::Mobil>(id).lateral.change.active());
   auto const before = world.frame();
   world.set_state(id, the_other_way, cb::Reroute::yes);
   CHECK(world.memory<cb::Mobil>(id) == cb::Mobil::Memory{});
@@ -422,7 +422,7 @@ TEST_CASE(
   world.keep_history(5);
   REQUIRE(world.step(0.2));
   auto const before = world.frame();
-  world.set_behavior(id, cb::IdmClassic{.desired_speed = 3.0});
+  world.set_behavior(id, cb::IdmClassic{.law = {.desired_speed = 3.0}});
   CHECK(world.history_size() == 1);
   CHECK_NOTHROW(world.restore(world.history(1)));
   CHECK_NOTHROW(world.restore(before));
@@ -590,7 +590,8 @@ TEST_CASE("a prediction with parameters that make no sense is refused") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}});
   refuses("desired_speed", [&] {
-    (void)world.observe(id).predict(cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{.desired_speed = undefined}));
+    (void)world.observe(id).predict(
+        cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{.law = {.desired_speed = undefined}}));
   });
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "cambium/behavior/law/idm.hpp"
-#include "cambium/behavior/law/road_rules.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
@@ -12,7 +11,7 @@ namespace cambium::presets {
 
 /// Treiber, Hennecke, Helbing 2000, "Congested traffic states in empirical observations and microscopic simulations",
 /// table I: 120 km/h, 1.6 s, 0.73 m/s^2, 1.67 m/s^2, 2 m. String unstable in dense traffic, as the paper intends.
-[[nodiscard]] constexpr IdmParameters treiber_2000() {
+[[nodiscard]] constexpr Idm treiber_2000() {
   return {.desired_speed = 120 / 3.6,
           .time_headway = 1.6,
           .minimum_gap = 2.0,
@@ -23,7 +22,7 @@ namespace cambium::presets {
 
 /// Car of Kesting, Treiber, Helbing 2010, "Enhanced intelligent driver model to access the impact of driving strategies
 /// on traffic capacity", table 1: 120 km/h, 1.5 s, 1.4 m/s^2, 2 m/s^2, 2 m; the ACC model adds coolness 0.99.
-[[nodiscard]] constexpr IdmParameters kesting_2010_car() {
+[[nodiscard]] constexpr Idm kesting_2010_car() {
   return {.desired_speed = 120 / 3.6,
           .time_headway = 1.5,
           .minimum_gap = 2.0,
@@ -33,7 +32,7 @@ namespace cambium::presets {
 }
 
 /// Truck of the same table: 85 km/h, 2 s, 0.7 m/s^2, 2 m/s^2, 4 m.
-[[nodiscard]] constexpr IdmParameters kesting_2010_truck() {
+[[nodiscard]] constexpr Idm kesting_2010_truck() {
   return {.desired_speed = 85 / 3.6,
           .time_headway = 2.0,
           .minimum_gap = 4.0,
@@ -44,7 +43,7 @@ namespace cambium::presets {
 
 /// A driver in a hurry: short headway, high acceleration, late and hard braking (Treiber, Kesting 2013, "Traffic Flow
 /// Dynamics", section 11.3.1). The numbers are ours, chosen around `kesting_2010_car`.
-[[nodiscard]] constexpr IdmParameters aggressive() {
+[[nodiscard]] constexpr Idm aggressive() {
   return {.desired_speed = 140 / 3.6,
           .time_headway = 0.9,
           .minimum_gap = 1.5,
@@ -54,7 +53,7 @@ namespace cambium::presets {
 }
 
 /// A careful driver; the opposite of `aggressive`, chosen likewise.
-[[nodiscard]] constexpr IdmParameters timid() {
+[[nodiscard]] constexpr Idm timid() {
   return {.desired_speed = 100 / 3.6,
           .time_headway = 2.1,
           .minimum_gap = 3.0,
@@ -69,45 +68,81 @@ namespace cambium::presets {
 /// as in SUMO, whose drivers' speed factor is normal(1, 0.1). The other numbers, and where in these ranges a
 /// temperament lies, are ours.
 struct Temperament {
-  IdmParameters idm = kesting_2010_car();
-  double politeness = 0.2;            ///< `BasicMobil::politeness` [-]
-  double threshold = 0.2;             ///< `BasicMobil::threshold` [m/s^2]
-  double lane_change_braking = 4.0;   ///< `LaneChanging::safe_deceleration`; 0.5 m/s^2 more abort one [m/s^2]
-  double lateral_acceleration = 3.0;  ///< `RoadRules::lateral_acceleration` [m/s^2]
-  double signal_braking = 3.0;        ///< `RoadRules::safe_deceleration`: higher, it stops at yellow more often [m/s^2]
-  double merging_headway = 1.0;       ///< `RoadRules::merging_headway` [s]
-  double late_at_red = 0.0;           ///< `RoadRules::late_at_red` [s]
-  double speed_factor = 1.0;          ///< `RoadRules::speed_factor` [-]
-  double time_margin = 1.0;           ///< `Intersection::time_margin` [s]
+  Idm idm = kesting_2010_car();
+  double politeness = 0.2;            ///< `MobilRule::politeness` [-]
+  double threshold = 0.2;             ///< `MobilRule::threshold` [m/s^2]
+  double lane_change_braking = 4.0;   ///< `ChangeLanes::safe_deceleration`; 0.5 m/s^2 more abort one [m/s^2]
+  double lateral_acceleration = 3.0;  ///< `Bends::lateral_acceleration` [m/s^2]
+  double signal_braking = 3.0;        ///< `Signals::safe_deceleration`: higher, it stops at yellow more often [m/s^2]
+  double merging_headway = 1.0;       ///< `KeepLane::merging_headway` [s]
+  double late_at_red = 0.0;           ///< `Signals::late_at_red` [s]
+  double speed_factor = 1.0;          ///< `SpeedLimit::factor` [-]
+  double time_margin = 1.0;           ///< `Conflicts::time_margin` [s]
 
-  /// `driver` with this temperament: sets those of the above that it has, also in the driver that it wraps.
-  template <class Driver>
-  [[nodiscard]] constexpr Driver of(Driver driver = {}) const {
-    if constexpr (requires { driver.nominal; }) driver.nominal = of(driver.nominal);
-    if constexpr (requires { driver.idm; })
-      driver.idm = idm;
-    else if constexpr (requires { {driver.desired_speed += idm.desired_speed}; } && HasIdmParameters<Driver>)
-      follow_as(driver, idm);
-    if constexpr (requires { driver.politeness; }) driver.politeness = politeness;
-    if constexpr (requires { driver.threshold; }) driver.threshold = threshold;
-    if constexpr (requires { driver.changing.abort_deceleration; }) {
-      driver.changing.safe_deceleration = lane_change_braking;
-      driver.changing.abort_deceleration = lane_change_braking + 0.5;
+  /// `driver` with this temperament: sets those of the above that its parts have. A law other than IDM gets what every
+  /// law has.
+  template <class Law, class Lateral, class... Heeds>
+  [[nodiscard]] constexpr Driver<Law, Lateral, Heeds...> of(Driver<Law, Lateral, Heeds...> driver) const {
+    give(driver.law);
+    give(driver.lateral);
+    if constexpr (Heeding<Heeds...>::template contains<Bends>)
+      driver.template heed<Bends>().lateral_acceleration = lateral_acceleration;
+    if constexpr (Heeding<Heeds...>::template contains<Signals>) {
+      driver.template heed<Signals>().safe_deceleration = signal_braking;
+      driver.template heed<Signals>().late_at_red = late_at_red;
     }
-    if constexpr (requires { driver.rules; }) {
-      driver.rules.lateral_acceleration = lateral_acceleration;
-      driver.rules.safe_deceleration = signal_braking;
-      driver.rules.merging_headway = merging_headway;
-      driver.rules.late_at_red = late_at_red;
-      driver.rules.speed_factor = speed_factor;
+    if constexpr (Heeding<Heeds...>::template contains<SpeedLimit>)
+      driver.template heed<SpeedLimit>().factor = speed_factor;
+    if constexpr (Heeding<Heeds...>::template contains<Conflicts>) {
+      driver.template heed<Conflicts>().time_margin = time_margin;
+      driver.template heed<Conflicts>().safe_deceleration = signal_braking;
     }
-    if constexpr (requires { driver.time_margin; }) driver.time_margin = time_margin;
     return driver;
   }
+  /// The same for the driver in a wrapper, its `nominal`.
+  template <class Wrapper>
+  [[nodiscard]] constexpr Wrapper of(Wrapper wrapper) const requires requires {
+    wrapper.nominal;
+  }
+  {
+    wrapper.nominal = of(wrapper.nominal);
+    return wrapper;
+  }
+
+ private:
+  constexpr void give(Idm& law) const { law = idm; }
+  template <CarFollowingLaw Law>
+  constexpr void give(Law& law) const {
+    law.desired_speed = idm.desired_speed;
+    law.time_headway = idm.time_headway;
+    law.minimum_gap = idm.minimum_gap;
+    law.maximum_acceleration = idm.maximum_acceleration;
+    law.comfortable_deceleration = idm.comfortable_deceleration;
+    law.lowest_acceleration = idm.lowest_acceleration;
+  }
+  constexpr void give(KeepLane& lateral) const {
+    lateral.merging_headway = merging_headway;
+    lateral.safe_deceleration = signal_braking;
+  }
+  constexpr void give(TrackLine& lateral) const { give(lateral.keep); }
+  template <class Rule>
+  constexpr void give(ChangeLanes<Rule>& lateral) const {
+    give(lateral.keep);
+    give(lateral.rule);
+    lateral.safe_deceleration = lane_change_braking;
+    lateral.abort_deceleration = lane_change_braking + 0.5;
+  }
+  template <class... Filters>
+  constexpr void give(MobilRule<Filters...>& rule) const {
+    rule.politeness = politeness;
+    rule.threshold = threshold;
+  }
+  template <class Other>
+  constexpr void give(Other&) const {}
 };
 
 /// A whole driver of that temperament, such as `timid<Mobil>()`, `aggressive<HumanDriver<Intersection>>()`. Its desired
-/// speed is that of a motorway: set `obey_speed_limits` or another one elsewhere.
+/// speed is that of a motorway: set another one elsewhere, or let it heed `SpeedLimit`.
 template <class Driver>
 [[nodiscard]] constexpr Driver timid() {
   return Temperament{.idm = timid(),
@@ -119,12 +154,12 @@ template <class Driver>
                      .merging_headway = 2.0,
                      .speed_factor = 0.95,
                      .time_margin = 2.0}
-      .of<Driver>();
+      .of(Driver{});
 }
 /// A driver of usual temperament: the parameters of `Temperament{}`.
 template <class Driver>
 [[nodiscard]] constexpr Driver normal() {
-  return Temperament{}.of<Driver>();
+  return Temperament{}.of(Driver{});
 }
 /// A driver who keeps short gaps and changes lanes for small advantages.
 template <class Driver>
@@ -139,12 +174,12 @@ template <class Driver>
                      .late_at_red = 1.0,
                      .speed_factor = 1.1,
                      .time_margin = 0.6}
-      .of<Driver>();
+      .of(Driver{});
 }
 
 /// A cyclist, to be combined with `bicycle_dynamics`. The numbers are ours: 18 km/h, slightly below SUMO's default
 /// maximum speed of bicycles (20 km/h), gentle acceleration and braking, short gaps.
-[[nodiscard]] constexpr IdmParameters cyclist() {
+[[nodiscard]] constexpr Idm cyclist() {
   return {.desired_speed = 18 / 3.6,
           .time_headway = 1.0,
           .minimum_gap = 1.0,
@@ -153,9 +188,9 @@ template <class Driver>
           .lowest_acceleration = -5.0};
 }
 
-/// The rules of a cyclist, for any driver model: it keeps to the side of its lane. Drivers pass it within the lane
-/// where that is wide enough, see `RoadRules`.
-[[nodiscard]] constexpr RoadRules cyclist_rules() { return {.keep_to_side = true}; }
+/// How a cyclist keeps its lane: at the side. Drivers pass it within the lane where that is wide enough, see
+/// `KeepLane`.
+[[nodiscard]] constexpr KeepLane cyclist_lane() { return {.keep_to_side = true}; }
 
 /// Vehicle model of a bicycle (`geometry::bicycle`). It is a single track, because a bicycle steers and cannot turn on
 /// the spot. It brakes by at most 5 m/s^2, before its rear wheel lifts off (centre of mass 1.1 m high, 0.6 m behind the
@@ -183,7 +218,7 @@ template <class Driver>
 struct Preset {
   char const* name;
   char const* source;
-  IdmParameters parameters;
+  Idm parameters;
 };
 
 /// All drivers.

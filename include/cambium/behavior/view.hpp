@@ -39,7 +39,7 @@ enum class Merging : std::uint8_t {
   counts,     ///< like those in the corridor, by their position relative to the merge
   by_rule,    ///< likewise, except in junctions, where the right of way decides, see `LaneCorridor::conflicts`
   ignored,    ///< until they have reached the merge, so that the driver opens no gap
-  gives_way,  ///< like `counts`; the driver also waits for a gap before those behind, see `RoadRules::gap_to_wait_for`
+  gives_way,  ///< like `counts`; the driver also waits for a gap before those behind, see `KeepLane::gap_to_wait_for`
 };
 
 /// Options of a query along a lane corridor.

@@ -14,6 +14,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/hash.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/nearest_names.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/core/type_info.hpp"
@@ -289,7 +290,7 @@ class FieldReader {
     if (version > type.version)
       refuse("is of a newer version", "read it with the program that wrote it, or a newer one");
     if (fields > all.size())
-      refuse("has more fields than in this program",
+      refuse("has more fields than in this program (" + joined(names_of(all), ", ") + ")",
              "read it with the program that wrote it, or a newer one; never remove a field from a description");
     if (version == type.version && names != (fields == all.size() ? all.hash : hash_of_fields(all.first(fields))))
       refuse("was saved with other fields, or in another order",

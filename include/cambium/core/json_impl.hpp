@@ -184,9 +184,13 @@ class JsonReader {
     for (auto const& member : *members) {
       auto const field =
           std::find_if(fields.begin(), fields.end(), [&](FieldInfo const& one) { return one.name == member.first; });
-      if (field == fields.end())
+      if (field == fields.end()) {
+        std::vector<std::string> within;
+        if (auto const* const inner = member.second.members())
+          for (auto const& one : *inner) within.push_back(one.first);
         throw ParameterError(where(path), "has no field \"" + member.first + "\"",
-                             suggestion(member.first, names_of(fields)));
+                             suggest_field(type, member.first, within));
+      }
       read({&path, field->name}, *field, field->type(), field->in(object), field->in(usual), member.second);
     }
   }

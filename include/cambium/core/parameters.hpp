@@ -118,6 +118,10 @@ void check_values(TypeInfo const& type, void const* object, char const* name, st
 [[nodiscard]] std::string parameters_line(TypeInfo const& type, void const* object);
 [[nodiscard]] std::uint64_t parameters_hash(TypeInfo const& type, void const* object);
 void set_number(TypeInfo const& type, void* object, std::string_view key, double number, std::string const& where);
+/// A remedy for a `word` that is no field of a struct: a field of nearly that name; else a field of the structs in it,
+/// or one whose type has that name, with its key; else the list of fields. `also`: further words to look for there.
+[[nodiscard]] std::string suggest_field(TypeInfo const& type, std::string_view word,
+                                        std::span<std::string const> also = {});
 
 /// How numbers are compared: by `==`, so that 0 equals -0 and NaN nothing, or bit by bit.
 enum class Equality : bool { of_values, of_bits };

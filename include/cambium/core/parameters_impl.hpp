@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -389,6 +390,41 @@ CAMBIUM_COLD bool are_equal(TypeInfo const& type, void const* a, void const* b, 
   return PlainValue::at(a, type).number == PlainValue::at(b, type).number;
 }
 
+/// The key of the first field that `is_meant` in the structs within a struct, those nearest to the top first.
+CAMBIUM_COLD std::string key_within(TypeInfo const& type, std::function<bool(FieldInfo const&)> const& is_meant,
+                                    int depth = 4) {
+  auto const search = [&](auto const& find) -> std::string {
+    for (auto const& field : type.fields())
+      if (field.type().kind == TypeInfo::Kind::structure)
+        if (std::string const key = find(field.type()); !key.empty()) return field.name + ("." + key);
+    return "";
+  };
+  auto const key = search([&](TypeInfo const& part) -> std::string {
+    for (auto const& field : part.fields())
+      if (is_meant(field)) return field.name;
+    return "";
+  });
+  if (!key.empty() || depth == 0) return key;
+  return search([&](TypeInfo const& part) { return key_within(part, is_meant, depth - 1); });
+}
+
+CAMBIUM_COLD std::string suggest_field(TypeInfo const& type, std::string_view word, std::span<std::string const> also) {
+  auto const names = names_of(type.fields());
+  if (!nearest_names(word, names).empty()) return suggestion(word, names);
+  auto const is_called = [](std::string_view wanted) {
+    return [wanted](FieldInfo const& field) { return field.name == wanted; };
+  };
+  auto const is_near = [&](FieldInfo const& field) { return !nearest_names(word, {field.name}).empty(); };
+  for (auto const& field : type.fields())
+    if (field.type().kind == TypeInfo::Kind::structure && field.type().name == word)
+      return "is it " + std::string(field.name) + "?";
+  for (auto const& key : {key_within(type, is_called(word)), key_within(type, is_near)})
+    if (!key.empty()) return "is it " + key + "?";
+  for (auto const& other : also)
+    if (auto const key = key_within(type, is_called(other)); !key.empty()) return "its " + other + " may be " + key;
+  return suggestion(word, names);
+}
+
 CAMBIUM_COLD void set_number(TypeInfo const& type, void* object, std::string_view key, double number,
                              std::string const& where) {
   auto const place = (where.empty() ? "" : where + ": ") + (key.empty() ? "the empty key" : std::string(key));
@@ -426,10 +462,10 @@ CAMBIUM_COLD void set_number(TypeInfo const& type, void* object, std::string_vie
         enter(field->type(), field->in(object));
         continue;
       }
-      names = names_of(fields);
     }
     bool const is_element = here->kind == TypeInfo::Kind::list || name.find('[') != name.npos;
-    refuse(is_element ? of_list : suggestion(name, names));
+    bool const is_struct = here->kind == TypeInfo::Kind::structure;
+    refuse(is_element ? of_list : is_struct ? suggest_field(*here, name) : suggestion(name, names));
   }
   enter_optional();
   if (!here->is_plain()) refuse(here->kind == TypeInfo::Kind::list ? of_list : "name a number in it");

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/core/constants.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
@@ -109,13 +109,11 @@ template <class World>
   return ids;
 }
 
-/// The desired speed of a driver, or of the driver that it wraps; null if it has none.
+/// The desired speed of a driver's law, or of the driver that it wraps; null if it has none.
 template <class Driver>
 [[nodiscard]] auto* desired_speed_of(Driver& driver) {
-  if constexpr (requires { driver.desired_speed; })
-    return &driver.desired_speed;
-  else if constexpr (requires { driver.idm.desired_speed; })
-    return &driver.idm.desired_speed;
+  if constexpr (requires { driver.law.desired_speed; })
+    return &driver.law.desired_speed;
   else if constexpr (requires { driver.driver; })
     return desired_speed_of(driver.driver);
   else

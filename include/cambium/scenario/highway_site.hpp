@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/map.hpp"

@@ -72,18 +72,19 @@ CAMBIUM_COLD double usable_length(HighwaySite const& site) {
 CAMBIUM_COLD Mobil sample_highway_driver(bool is_truck, RandomStream& random) {
   Mobil driver;
   double const kind = uniform01(random);
-  driver.idm = is_truck     ? presets::kesting_2010_truck()
+  driver.law = is_truck     ? presets::kesting_2010_truck()
                : kind < 0.2 ? presets::aggressive()
                : kind < 0.4 ? presets::timid()
                             : presets::kesting_2010_car();
-  driver.idm.desired_speed *= Uniform{0.9, 1.1}(random);
-  driver.politeness = kind < 0.2 ? 0.0 : 0.3;
-  driver.keep_right = true;
-  driver.bias = is_truck ? 0.6 : 0.3;
-  driver.route_horizon = 800.0;  // exits are announced early
-  driver.route_bias = 4.0;
-  driver.changing.others = presets::kesting_2010_car();
-  driver.changing.trucks = presets::kesting_2010_truck();
+  driver.law.desired_speed *= Uniform{0.9, 1.1}(random);
+  auto& rule = driver.lateral.rule;
+  rule.politeness = kind < 0.2 ? 0.0 : 0.3;
+  rule.keep_right = true;
+  rule.bias = is_truck ? 0.6 : 0.3;
+  rule.route_horizon = 800.0;  // exits are announced early
+  rule.route_bias = 4.0;
+  driver.lateral.others = presets::kesting_2010_car();
+  driver.lateral.trucks = presets::kesting_2010_truck();
   return driver;
 }
 
@@ -118,11 +119,11 @@ CAMBIUM_COLD Scenario<HighwaySite::World> draw_highway(HighwaySite const& site, 
       bool const exits = is_early && !site.exits.empty() && (is_ego || uniform01(random) < 0.15);
       auto const exit = exits ? uniform_index(random, static_cast<std::uint32_t>(site.exits.size())) : 0;
       auto driver = sample_highway_driver(is_truck, random);
-      if (exits) driver.changing.rest = 1.0;  // several lanes may have to be crossed
+      if (exits) driver.lateral.rest = 1.0;  // several lanes may have to be crossed
       auto const id = static_cast<AgentId>(scenario.agents.size());
       scenario.agents.push_back({.position = pose.position(),
                                  .heading = pose.heading,
-                                 .speed = std::min(vehicle.speed, driver.idm.desired_speed),
+                                 .speed = std::min(vehicle.speed, driver.law.desired_speed),
                                  .shape = vehicle.shape,
                                  .behavior = driver,
                                  .goal = exits ? Goal(ReachLane{site.exits[exit]}) : Goal(),

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"

@@ -66,9 +66,9 @@ CAMBIUM_COLD void try_to_add(JunctionSite const& site, JunctionTraffic const& tr
   std::optional<AgentId> id;
   if (traffic.scattered_ids) id = static_cast<AgentId>(random() >> 33);
   double const desired = 8.0 + 7.0 * uniform01(random);
-  auto const idm = cycles ? presets::cyclist() : IdmParameters{.desired_speed = desired};
-  Intersection driver{.idm = idm};
-  driver.rules.keep_to_side = cycles;
+  auto const idm = cycles ? presets::cyclist() : Idm{.desired_speed = desired};
+  Intersection driver{.law = idm};
+  driver.lateral.keep_to_side = cycles;
   JunctionSite::World::AgentSpec spec{.position = pose.position(),
                                       .heading = pose.heading,
                                       .shape = shape,

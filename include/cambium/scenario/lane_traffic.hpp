@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/core/distribution.hpp"
 #include "cambium/core/parameters.hpp"
@@ -73,15 +73,14 @@ struct LaneTraffic {
       LaneVehicle v;
       v.shape = draw_shape(random);
       bool const heavy = v.shape.length() > 7.5;
-      v.driver.desired_speed = desired_speed(random) * (heavy ? 0.85 : 1.0);
-      v.driver.time_headway = Uniform{1.0, 1.8}(random);
-      v.driver.minimum_gap = Uniform{1.5, 2.5}(random);
-      v.driver.maximum_acceleration = heavy ? 0.8 : Uniform{1.2, 2.0}(random);
+      v.driver.law.desired_speed = desired_speed(random) * (heavy ? 0.85 : 1.0);
+      v.driver.law.time_headway = Uniform{1.0, 1.8}(random);
+      v.driver.law.minimum_gap = Uniform{1.5, 2.5}(random);
+      v.driver.law.maximum_acceleration = heavy ? 0.8 : Uniform{1.2, 2.0}(random);
       if (v.shape == geometry::bicycle()) {
-        v.driver = idm_classic(presets::cyclist());
-        v.driver.rules = presets::cyclist_rules();
+        v.driver = {.law = presets::cyclist(), .lateral = presets::cyclist_lane()};
       }
-      v.speed = std::min(speed(random), v.driver.desired_speed);
+      v.speed = std::min(speed(random), v.driver.law.desired_speed);
       double const drawn = gap ? (*gap)(random) : headway(random);
       double const room = vehicles.empty() ? (gap ? drawn * uniform01(random) : 0.0)
                           : gap            ? drawn
@@ -98,7 +97,7 @@ struct LaneTraffic {
   /// deceleration. `headway` [s]: additional time gap.
   [[nodiscard]] static double safe_gap(IdmClassic const& driver, double speed, double leader_speed, double headway) {
     double const closing = std::max(0.0, speed - leader_speed);
-    return driver.minimum_gap + speed * headway + closing * closing / (2 * driver.comfortable_deceleration);
+    return driver.law.minimum_gap + speed * headway + closing * closing / (2 * driver.law.comfortable_deceleration);
   }
 };
 

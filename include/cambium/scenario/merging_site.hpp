@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"

@@ -198,7 +198,7 @@ CAMBIUM_COLD void set_merging(Scenario<MergingSite::World>& scenario, std::uint3
   for (auto& agent : scenario.agents) {
     bool const is_through = std::holds_alternative<NoGoal>(agent.goal),
                insists = uniform01(random) < traffic.non_yielding_share;
-    auto& merging = std::get<IdmClassic>(agent.behavior).rules.merging;
+    auto& merging = std::get<IdmClassic>(agent.behavior).lateral.merging;
     if (is_through && insists) merging = Merging::ignored;
     if (!is_through && traffic.ramp_waits) merging = Merging::gives_way;
   }

@@ -25,7 +25,8 @@
 ///
 ///   {"format": 1, "scenarios": [
 ///     {"map_file": "merging.xodr", "ego": 0, "agents": [
-///       {"id": 0, "position": {"x": 20, "y": -5.25}, "speed": 12, "behavior": {"idm_classic": {"desired_speed": 20}},
+///       {"id": 0, "position": {"x": 20, "y": -5.25}, "speed": 12, "behavior": {"idm_classic": {"law":
+///       {"desired_speed": 20}}},
 ///        "goal": {"reach_lane": {"lane": "3/0/-2"}}}]}]}
 namespace cambium {
 

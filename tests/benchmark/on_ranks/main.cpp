@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/benchmark/benchmark_on_ranks.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
@@ -35,7 +35,7 @@ struct Fails {
 
 /// IDM; the dying rank is killed by its process for jobs.
 cb::Contender<World> idm(int rank) {
-  auto idm = cb::contender<World>(cb::IdmClassic{.desired_speed = 22.0});
+  auto idm = cb::contender<World>(cb::IdmClassic{.law = {.desired_speed = 22.0}});
   char const* const dying = std::getenv("DYING_RANK");
   if (rank == 0 || dying == nullptr || std::to_string(rank) != dying) return idm;
   idm.run = [run = idm.run, rank = getpid()](auto const& scenario, auto const& options, bool records) {

@@ -14,9 +14,9 @@
 #include <string_view>
 #include <vector>
 
-#include "cambium/behavior/human/human_driver.hpp"
-#include "cambium/behavior/following/idm_stochastic.hpp"
-#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
+#include "cambium/behavior/wrap/human_driver.hpp"
+#include "cambium/behavior/wrap/idm_stochastic.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/pedestrian/pedestrian.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/dynamic_set.hpp"
@@ -103,7 +103,7 @@ desk::World planner(desk::World::Behavior const& ego) {
   for (int i = 0; i < 8; ++i) {
     desk::World::Behavior driver = cb::Intersection{};
     if (i % 3 == 1) driver = cb::Mobil{};
-    if (i % 3 == 2) driver = cb::IdmClassic{.desired_speed = 9.0};
+    if (i % 3 == 2) driver = cb::IdmClassic{.law = {.desired_speed = 9.0}};
     world.add({.position = {50.0 + 25.0 * i, i % 2 == 0 ? -5.25 : -1.75}, .speed = 6.0 + i, .behavior = driver});
   }
   return world;

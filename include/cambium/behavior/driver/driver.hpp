@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/driver/driver_text.hpp"
 #include "cambium/behavior/driver/heeding.hpp"
 #include "cambium/behavior/driver/limits.hpp"
 #include "cambium/core/described.hpp"
@@ -29,18 +30,22 @@ template <class Lateral>
 ///                  lateral.look: leader, lanes that merge, lane changes --.
 ///                  heeds: lane end, bends, signals, conflicts, ...      ----> Limits --> lateral.drive --> Plan
 ///
-/// - `Law`: a `CarFollowing`, such as `Idm`.
+/// - `Law`: a `CarFollowingLaw`, such as `Idm`.
 /// - `Lateral`: `KeepLane`, `TrackLine`, `ChangeLanes<Rule>`, or a described struct of your own with
 ///   - `look(view, memory, limits, dt)`: decides on the course, adds who is in its way to the limits, and
 ///     returns what `drive` should know;
 ///   - `drive(view, memory, seen, limits, dt)`: the plan that drives `limits.within(limits.motion(dt))` there;
 ///   - `merging`, or a part `keep` with it: how road users count that merge into the lane, see `Merging`.
 /// - `Heeds`: see `Heeding`.
-template <CarFollowing Law, class Lateral, class... Heeds>
+template <CarFollowingLaw Law, class Lateral, class... Heeds>
 struct Driver {
   Law law{};
   Lateral lateral{};
   [[no_unique_address]] Heeding<Heeds...> heeds{};
+
+  /// The same driver, heeding more.
+  template <class... More>
+  using Also = Driver<Law, Lateral, Heeds..., More...>;
 
   struct Memory {
     [[no_unique_address]] MemoryOf<Lateral> lateral{};
@@ -49,7 +54,7 @@ struct Driver {
     void fell_short(double way, bool left_course) { cambium::fell_short(lateral, way, left_course); }
     void was_set() { cambium::was_set(lateral); }
 
-    static constexpr char const* name = "driver_memory";
+    static constexpr char const* name = detail::memory_name<Law, Lateral, Heeds...>;
     static constexpr auto parameters() {
       using P = Memory;
       return parameter_list(parameter("lateral", &P::lateral, "of the lateral part"),
@@ -63,10 +68,9 @@ struct Driver {
   static constexpr bool looks_around = detail::looks_around<Lateral>() || (detail::looks_around<Heeds>() || ...);
   static constexpr bool heeds_conflicts = (detail::heeds_conflicts<Heeds>() || ...);
 
-  static constexpr char const* name = "driver";
-  static constexpr char const* summary =
-      "follows by a law, keeps or changes its lane, and heeds what it is composed of";
-  static constexpr char const* source = "see its parts";
+  static constexpr char const* name = driver_text<Law, Lateral, Heeds...>.name;
+  static constexpr char const* summary = driver_text<Law, Lateral, Heeds...>.summary;
+  static constexpr char const* source = driver_text<Law, Lateral, Heeds...>.source;
   static constexpr auto parameters() {
     using P = Driver;
     return parameter_list(parameter("law", &P::law, "by which it follows"),

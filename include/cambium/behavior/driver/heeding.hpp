@@ -41,6 +41,9 @@ template <class T, class... Parts>
   return i;
 }
 
+template <class T, class... Parts>
+using FoundPart = std::tuple_element_t<place_of<T, Parts...>(), std::tuple<Parts...>>;
+
 /// The memory of a heed as a list of fields; none for a heed without one.
 template <class Owner, class Heed>
 [[nodiscard]] constexpr auto memory_parameter() {
@@ -62,7 +65,17 @@ template <class Owner, class Heed>
 /// It may also have `Merging merging(view, merging)`, which changes how road users count that merge into the lane.
 template <class... Heeds>
 struct Heeding : detail::Slotted<Heeds>... {
+  /// Whether `H`, or one derived from it, is among the heeds.
+  template <class H>
+  static constexpr bool contains = detail::place_of<H, Heeds...>() < sizeof...(Heeds);
+
   struct Memory : detail::HeedMemory<Heeds>... {
+    /// Of one of the heeds that have one.
+    template <class H>
+    [[nodiscard]] auto const& get() const requires contains<H> {
+      return static_cast<detail::HeedMemory<detail::FoundPart<H, Heeds...>> const&>(*this).memory;
+    }
+
     static constexpr char const* name = "heeds_memory";
     static constexpr auto parameters() {
       return [](auto&& visit) { (detail::memory_parameter<Memory, Heeds>()(visit), ...); };
@@ -76,24 +89,21 @@ struct Heeding : detail::Slotted<Heeds>... {
         Heeds::name, static_cast<Heeds Heeding::*>(&detail::Slotted<Heeds>::part), Heeds::summary)...);
   }
 
-  /// Whether `H`, or one derived from it, is among the heeds.
-  template <class H>
-  static constexpr bool contains = detail::place_of<H, Heeds...>() < sizeof...(Heeds);
-
   template <class H>
   [[nodiscard]] constexpr H& get() requires contains<H> {
-    return static_cast<detail::Slotted<Found<H>>&>(*this).part;
+    return static_cast<detail::Slotted<detail::FoundPart<H, Heeds...>>&>(*this).part;
   }
   template <class H>
   [[nodiscard]] constexpr H const& get() const requires contains<H> {
-    return static_cast<detail::Slotted<Found<H>> const&>(*this).part;
+    return static_cast<detail::Slotted<detail::FoundPart<H, Heeds...>> const&>(*this).part;
   }
 
   /// The desired speed of a driver with `law` at `speed` [m/s].
   template <class Law, class View>
-  [[nodiscard]] double desired_speed(Law const& law, View const& view, double speed) const {
+  [[nodiscard]] double desired_speed(Law const& law, [[maybe_unused]] View const& view,
+                                     [[maybe_unused]] double speed) const {
     double desired = law.desired_speed;
-    auto const lower = [&](auto const& heed) {
+    [[maybe_unused]] auto const lower = [&](auto const& heed) {
       if constexpr (requires { heed.desired_speed(law, view, speed); })
         desired = std::min(desired, heed.desired_speed(law, view, speed));
     };
@@ -103,8 +113,8 @@ struct Heeding : detail::Slotted<Heeds>... {
 
   /// How road users count that merge into the lane; without these heeds as `merging` says.
   template <class View>
-  [[nodiscard]] Merging merging(View const& view, Merging merging) const {
-    auto const ask = [&](auto const& heed) {
+  [[nodiscard]] Merging merging([[maybe_unused]] View const& view, Merging merging) const {
+    [[maybe_unused]] auto const ask = [&](auto const& heed) {
       if constexpr (requires { heed.merging(view, merging); }) merging = heed.merging(view, merging);
     };
     (ask(part<Heeds>()), ...);
@@ -113,16 +123,14 @@ struct Heeding : detail::Slotted<Heeds>... {
 
   /// Adds to the limits of a step of `dt` [s].
   template <class View, class Limits>
-  void heed(View const& view, Memory& memory, Limits& limits, double dt) const {
+  void heed([[maybe_unused]] View const& view, [[maybe_unused]] Memory& memory, [[maybe_unused]] Limits& limits,
+            [[maybe_unused]] double dt) const {
     (heed_one<Heeds>(view, memory, limits, dt), ...);
   }
 
   friend bool operator==(Heeding const&, Heeding const&) = default;
 
  private:
-  template <class H>
-  using Found = std::tuple_element_t<detail::place_of<H, Heeds...>(), std::tuple<Heeds...>>;
-
   template <class H>
   [[nodiscard]] H const& part() const {
     return static_cast<detail::Slotted<H> const&>(*this).part;

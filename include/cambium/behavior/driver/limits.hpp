@@ -24,7 +24,8 @@ namespace cambium {
 /// - `at(speed, desired_speed)`, which returns what `AtSpeed` is for all laws, if it is computed faster for several
 ///   leaders at one speed, or has a better integration scheme than `follow_motion`.
 template <class L>
-concept CarFollowing = std::copyable<L> && Described<L> && requires(L const law, Constraint const& leader, double x) {
+concept CarFollowingLaw = std::copyable<L> && Described<L> &&
+    requires(L const law, Constraint const& leader, double x) {
   { law.desired_speed } -> std::convertible_to<double>;
   { law.time_headway } -> std::convertible_to<double>;
   { law.minimum_gap } -> std::convertible_to<double>;
@@ -35,7 +36,7 @@ concept CarFollowing = std::copyable<L> && Described<L> && requires(L const law,
 };
 
 /// A law at one speed, by its `acceleration` alone.
-template <CarFollowing Law>
+template <CarFollowingLaw Law>
 class AtSpeed {
  public:
   static constexpr bool asks_acceleration = requires { requires Law::asks_acceleration; };
@@ -66,7 +67,7 @@ class AtSpeed {
 };
 
 /// `law` at `speed` with `desired_speed` [m/s].
-template <CarFollowing Law>
+template <CarFollowingLaw Law>
 [[nodiscard]] auto at_speed(Law const& law, double speed, double desired_speed) {
   if constexpr (requires { law.at(speed, desired_speed); })
     return law.at(speed, desired_speed);
@@ -77,7 +78,7 @@ template <CarFollowing Law>
 /// What bounds a driver's motion in this step: the strictest constraint of its law, and the shortest motion. Bends,
 /// signals and conflicts bound the motion instead of being constraints of the law, because a driver brakes for them
 /// evenly and exactly to a point, while a law would keep a time headway to them.
-template <CarFollowing Law>
+template <CarFollowingLaw Law>
 class Limits {
   static constexpr double infinite = std::numeric_limits<double>::infinity(), not_asked = infinite;
 
@@ -109,6 +110,8 @@ class Limits {
     constraint_ = {};
     acceleration_ = not_asked;
   }
+  /// Whether the road is not free.
+  [[nodiscard]] bool is_constrained() const { return constraint_.gap < infinite; }
   /// Keeps a motion over the step if it is shorter.
   void bound(LongitudinalMotion<double> const& motion) { bound_ = nearer(bound_, motion); }
 

@@ -35,4 +35,11 @@ struct Bends {
   }
 };
 
+/// `Bends` with another default: `percent` hundredths of a metre per second squared.
+template <int percent>
+struct BendsFor : Bends {
+  constexpr BendsFor() : Bends{percent / 100.0} {}
+  constexpr BendsFor(Bends const& bends) : Bends(bends) {}
+};
+
 }  // namespace cambium

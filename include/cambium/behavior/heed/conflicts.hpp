@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "cambium/behavior/junction/conflict_order.hpp"
+#include "cambium/behavior/heed/conflict_order.hpp"
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/view.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/lateral/keep_lane.hpp"
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/constraint.hpp"
@@ -28,6 +28,22 @@ struct LaneChoice {
   double lane_end;                        ///< see `cambium::lane_end`
   bool may_change;                        ///< the rest since the last change is over
   Changing const& changing;               ///< knows what is safe
+
+  /// The lane beside on that side, with its leader and its follower; nothing where there is none, or the road marks
+  /// forbid a change.
+  [[nodiscard]] std::optional<LaneOption> beside(bool left) const {
+    auto const side = view.corridor().pieces[view.place().piece].beside(left);
+    if (side == none<CorridorId> || !changing.marks_permit(view, left)) return std::nullopt;
+    LaneOption option{view.place(side), left, {}, {}};
+    option.front = view.ahead(option.place);
+    option.rear = view.behind(option.place);
+    return option;
+  }
+
+  /// Whether nobody has to brake hard if it changes there now.
+  [[nodiscard]] bool is_safe(LaneOption const& option) const {
+    return changing.is_safe(view, limits, option, changing.safe_deceleration);
+  }
 
   /// The acceleration behind a road user in a lane beside, or on a free road [m/s^2].
   [[nodiscard]] double response(std::optional<RoadUser> const& front) const {

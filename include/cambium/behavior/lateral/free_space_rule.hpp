@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "cambium/behavior/lane_change/corridor_filters.hpp"
+#include "cambium/behavior/lateral/corridor_filters.hpp"
 #include "cambium/behavior/lateral/change_lanes.hpp"
 
 namespace cambium {

@@ -87,10 +87,7 @@ struct KeepLane {
   template <class View, class Limits>
   std::monostate look(View const& view, Memory& memory, Limits& limits, double /*dt*/) const {
     if (!steers(view, memory)) [[likely]] {
-      if (!view.corridor().feeders.empty()) [[unlikely]]
-        limits.heed(strictest_merging(view, limits));
-      else if (auto const next = view.ahead({.merging = limits.merging}))
-        limits.heed(detail::constraint_of<typename Limits::Response>(view, *next));
+      heed_next(view, limits);
       return {};
     }
     auto changed = memory;  // calls that are not inlined get copies, so that the originals can stay in registers
@@ -106,6 +103,15 @@ struct KeepLane {
   [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, std::monostate, Limits const& limits,
                                  double dt) const {
     return along_lane(view, limits.within(limits.motion(dt)), dt, memory);
+  }
+
+  /// The same for a driver that passes nobody within its lane.
+  template <class View, class Limits>
+  void heed_next(View const& view, Limits& limits) const {
+    if (!view.corridor().feeders.empty()) [[unlikely]]
+      limits.heed(strictest_merging(view, limits));
+    else if (auto const next = view.ahead({.merging = limits.merging}))
+      limits.heed(detail::constraint_of<typename Limits::Response>(view, *next));
   }
 
   /// Adds the next vehicle in the own lane and in each lane that merges into it, and a merge to wait for.

@@ -7,10 +7,26 @@
 #include <tuple>
 #include <utility>
 
-#include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/behavior/lateral/change_lanes.hpp"
+#include "cambium/behavior/lateral/corridor_filters.hpp"
+#include "cambium/core/macros.hpp"
 
 namespace cambium {
+
+/// Accelerations [m/s^2] of the driver and both followers, now and after a lane change.
+struct MobilSituation {
+  double own{}, own_after{};
+  double new_follower{}, new_follower_after{};
+  double old_follower{}, old_follower_after{};
+};
+
+/// Incentive of a lane change above the threshold [m/s^2] (Kesting, Treiber, Helbing 2007, eq. 3); a change is
+/// worthwhile if it is above 0. `P` has the parameters `politeness` [-] and `threshold` [m/s^2].
+template <class P>
+[[nodiscard]] double mobil_incentive(P const& p, MobilSituation const& at) {
+  double const others = at.new_follower_after - at.new_follower + at.old_follower_after - at.old_follower;
+  return at.own_after - at.own + p.politeness * others - p.threshold;
+}
 
 /// Lane changing by MOBIL (Kesting, Treiber, Helbing 2007, "General lane-changing model MOBIL for car-following
 /// models"). The driver compares accelerations, its own by its law and the followers' by IDM, now and after a change:

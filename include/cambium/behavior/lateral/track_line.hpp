@@ -5,11 +5,33 @@
 #include <cstdint>
 #include <variant>
 
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
 #include "cambium/behavior/lateral/keep_lane.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/dynamics/integration.hpp"
+#include "cambium/execution/steering.hpp"
+#include "cambium/geometry/angle.hpp"
 
 namespace cambium {
+
+/// Pose of a front axle relative to a line.
+struct FrontAxle {
+  double offset{};         ///< of the axle to the left of the line [m]
+  double heading_error{};  ///< direction of the line minus that of the vehicle [rad]
+  double curvature{};      ///< of the line [1/m]
+};
+
+/// Pose of the front axle, `wheel_base` [m] ahead of `state`, relative to `line`. `hint`: a nearby segment; becomes the
+/// one found.
+template <MotionState State>
+[[nodiscard]] FrontAxle front_axle(geometry::Line const& line, State const& state, double wheel_base,
+                                   std::uint32_t& hint) {
+  auto const [sin, cos] = geometry::sin_cos(state.heading);
+  auto const foot = line.project({state.x + wheel_base * cos, state.y + wheel_base * sin}, hint);
+  hint = foot.segment;
+  auto const& segment = line.segments()[foot.segment];
+  double const along = segment.heading + segment.curvature * std::clamp(foot.s - segment.s, 0.0, segment.length);
+  return {foot.lateral, geometry::angle_difference(along, state.heading), segment.curvature};
+}
 
 /// Keeps its lane as `KeepLane`, but steers its front axle to the corridor's centre line (Stanley controller) through
 /// its vehicle model.

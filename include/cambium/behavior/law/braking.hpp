@@ -134,7 +134,7 @@ template <class View>
 /// Where a vehicle with its front end at `front` [m] must stop for signals within `look_ahead` [m]: red lights, yellow
 /// lights if it can stop by `deceleration` [m/s^2], and stop signs. It stops `margin` [m] before the line if it can.
 /// `stopped_at` [m] is updated: the line of the last stop sign at which the vehicle has stopped. `late` [s]: see
-/// `RoadRules::late_at_red`. O(signals).
+/// `Signals::late_at_red`. O(signals).
 template <class View>
 [[nodiscard]] SignalStop stop_at_signals(View const& view, double front, double speed, double look_ahead, double margin,
                                          double deceleration, double late, float& stopped_at) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <limits>
 #include <optional>
 
@@ -15,11 +16,14 @@ namespace cambium {
 
 /// A parameter struct with the fields of the Intelligent Driver Model, which the functions below read.
 template <class P>
-concept HasIdmParameters = HasDriverParameters<P> && requires(P const p) {
+concept HasIdmParameters = requires(P const p) {
+  { p.desired_speed } -> std::convertible_to<double>;
   p.time_headway;
   p.minimum_gap;
   p.maximum_acceleration;
+  p.comfortable_deceleration;
   p.exponent;
+  p.lowest_acceleration;
   p.highest_acceleration;
 };
 
@@ -41,8 +45,10 @@ template <class P>
                 "upper bound of the acceleration"));
 }
 
-/// The IDM parameters alone, for a model that holds them beside its own or assumes them of others. Defaults are BARK's.
-struct IdmParameters {
+class IdmLaw;
+
+/// The Intelligent Driver Model as a driver's law. Defaults are BARK's.
+struct Idm {
   double desired_speed = 15.0;
   double time_headway = 1.5;
   double minimum_gap = 2.0;
@@ -51,27 +57,23 @@ struct IdmParameters {
   double exponent = 4.0;
   double lowest_acceleration = -5.0;
   double highest_acceleration = 8.0;
+  double tolerance = 1e-4;
 
   static constexpr char const* name = "idm";
   static constexpr char const* summary =
-      "the parameters of the Intelligent Driver Model, for models that hold them beside their own";
-  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; defaults: BARK";
-  static constexpr auto parameters() { return idm_parameters<IdmParameters>(); }
-};
-static_assert(HasIdmParameters<IdmParameters>);
+      "a = a_max (1 - (v/v0)^4 - (s*/s)^2), s* = s0 + max(0, v T + v (v - v_leader) / (2 sqrt(a_max b)))";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000, eq. 3 and 4; defaults: BARK";
+  static constexpr auto parameters() {
+    return join_parameters(idm_parameters<Idm>(),
+                           parameter_list(parameter("tolerance", &Idm::tolerance, "m/s^2", Range{1e-12, 1},
+                                                    "integration error in speed, per second")));
+  }
 
-/// Gives `driver` the IDM parameters `idm`; whatever else it has stays.
-template <HasIdmParameters P>
-constexpr void follow_as(P& driver, IdmParameters const& idm) {
-  driver.desired_speed = idm.desired_speed;
-  driver.time_headway = idm.time_headway;
-  driver.minimum_gap = idm.minimum_gap;
-  driver.maximum_acceleration = idm.maximum_acceleration;
-  driver.comfortable_deceleration = idm.comfortable_deceleration;
-  driver.exponent = idm.exponent;
-  driver.lowest_acceleration = idm.lowest_acceleration;
-  driver.highest_acceleration = idm.highest_acceleration;
-}
+  /// The law at `speed` with `desired` speed [m/s].
+  [[nodiscard]] IdmLaw at(double speed, double desired) const;
+  [[nodiscard]] double acceleration(double speed, double desired, Constraint const& leader) const;
+};
+static_assert(HasIdmParameters<Idm>);
 
 /// x to the power of `exponent`, without `pow` for IDM's usual 4.
 template <class Scalar>
@@ -344,11 +346,8 @@ class IdmLaw {
   [[nodiscard]] double minimum_gap() const { return terms_.minimum_gap; }                    ///< [m]
 
   /// See `idm_motion`.
-  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& c, double dt, double tolerance) const {
-    return detail::idm_motion(terms_, speed_, c.gap, c.speed, dt, tolerance);
-  }
   [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& c, double dt) const {
-    return motion(c, dt, tolerance_);
+    return detail::idm_motion(terms_, speed_, c.gap, c.speed, dt, tolerance_);
   }
 
  private:
@@ -358,32 +357,9 @@ class IdmLaw {
   double tolerance_;  ///< [m/s^2]
 };
 
-/// The Intelligent Driver Model as a driver's law. Defaults are BARK's.
-struct Idm {
-  double desired_speed = 15.0;
-  double time_headway = 1.5;
-  double minimum_gap = 2.0;
-  double maximum_acceleration = 1.7;
-  double comfortable_deceleration = 1.67;
-  double exponent = 4.0;
-  double lowest_acceleration = -5.0;
-  double highest_acceleration = 8.0;
-  double tolerance = 1e-4;
-
-  static constexpr char const* name = "idm";
-  static constexpr char const* summary =
-      "a = a_max (1 - (v/v0)^4 - (s*/s)^2), s* = s0 + max(0, v T + v (v - v_leader) / (2 sqrt(a_max b)))";
-  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000, eq. 3 and 4; defaults: BARK";
-  static constexpr auto parameters() {
-    return join_parameters(idm_parameters<Idm>(),
-                           parameter_list(parameter("tolerance", &Idm::tolerance, "m/s^2", Range{1e-12, 1},
-                                                    "integration error in speed, per second")));
-  }
-
-  [[nodiscard]] IdmLaw at(double speed, double desired) const { return {*this, speed, desired, tolerance}; }
-  [[nodiscard]] double acceleration(double speed, double desired, Constraint const& leader) const {
-    return at(speed, desired)(leader);
-  }
-};
+inline IdmLaw Idm::at(double speed, double desired) const { return {*this, speed, desired, tolerance}; }
+inline double Idm::acceleration(double speed, double desired, Constraint const& leader) const {
+  return at(speed, desired)(leader);
+}
 
 }  // namespace cambium

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/safety/rss_conformant.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/wrap/rss_conformant.hpp"
 #include "cambium/core/constants.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/evaluation/evaluator.hpp"

@@ -11,8 +11,8 @@
 
 #include <boost/container/static_vector.hpp>
 
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/core/described.hpp"

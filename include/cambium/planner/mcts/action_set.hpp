@@ -8,9 +8,9 @@
 #include <type_traits>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/lane_change/driver_actions.hpp"
-#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/actions/driver_actions.hpp"
+#include "cambium/behavior/actions/macro_actions.hpp"
 #include "cambium/behavior/open_loop/external_input.hpp"
 #include "cambium/behavior/open_loop/motion_primitives.hpp"
 #include "cambium/core/distributions.hpp"
@@ -72,29 +72,27 @@ concept SearchActions = Described<Actions> &&
   { ActionSet<Actions>::goes_on_alike(memory, memory) } -> std::same_as<bool>;
 };
 
-template <>
-struct ActionSet<MacroActions> {
-  using Behavior = MacroActions;
+template <class Law, class... Heeds>
+struct ActionSet<BasicMacroActions<Law, Heeds...>> {
+  using Behavior = BasicMacroActions<Law, Heeds...>;
+  using Memory = typename Behavior::Memory;
   using Choice = std::uint8_t;
-  static constexpr std::size_t capacity = MacroActions::capacity;
+  static constexpr std::size_t capacity = Behavior::capacity;
   static constexpr bool usual_drives = true;
 
-  static MacroActions const& behavior(MacroActions const& actions) { return actions; }
+  static Behavior const& behavior(Behavior const& actions) { return actions; }
   template <class View>
-  static std::size_t list(MacroActions const& actions, View const& view, MacroActions::Memory const& memory,
-                          std::span<Choice> out) {
+  static std::size_t list(Behavior const& actions, View const& view, Memory const& memory, std::span<Choice> out) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < actions.size(); ++i)
       if (actions.available(view, i, memory.change)) out[count++] = static_cast<Choice>(i);
     return count;
   }
-  static void set(MacroActions::Memory& memory, Choice choice) { memory.choose(choice); }
-  static MacroAction const& action(MacroActions const& actions, Choice choice) { return actions.actions[choice]; }
-  static bool goes_on_alike(MacroActions::Memory const& a, MacroActions::Memory const& b) {
-    return a.change.target == b.change.target;
-  }
-  static Choice usual(MacroActions const& actions) { return actions.keeping_gap(); }
-  static std::string text(MacroActions const& actions, Choice choice) {
+  static void set(Memory& memory, Choice choice) { memory.choose(choice); }
+  static MacroAction const& action(Behavior const& actions, Choice choice) { return actions.actions[choice]; }
+  static bool goes_on_alike(Memory const& a, Memory const& b) { return a.change.target == b.change.target; }
+  static Choice usual(Behavior const& actions) { return actions.keeping_gap(); }
+  static std::string text(Behavior const& actions, Choice choice) {
     auto const& action = actions.actions[choice];
     std::string result = to_string(action.kind);
     if (action.kind != MacroAction::Kind::keep_gap) result += " " + detail::rounded_text(action.acceleration);
@@ -106,8 +104,8 @@ template <class Driver>
 struct ActionSet<DriverActions<Driver>> {
   using Behavior = DriverActions<Driver>;
   using Memory = typename Behavior::Memory;
-  using Macro = ActionSet<MacroActions>;
-  using Choice = Macro::Choice;
+  using Macro = ActionSet<typename Behavior::Macro>;
+  using Choice = typename Macro::Choice;
   static constexpr std::size_t capacity = Macro::capacity + 1;
   static constexpr bool usual_drives = true;
 

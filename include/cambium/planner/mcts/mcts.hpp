@@ -13,8 +13,8 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/headway_hypotheses.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/wrap/headway_hypotheses.hpp"
+#include "cambium/behavior/drivers.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/planner/mcts/belief.hpp"

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "cambium/behavior/following/headway_hypotheses.hpp"
+#include "cambium/behavior/wrap/headway_hypotheses.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/planner/detail/same_scene.hpp"
 #include "cambium/planner/mcts/belief.hpp"

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "cambium/behavior/lane_change/driver_actions.hpp"
-#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/actions/driver_actions.hpp"
+#include "cambium/behavior/actions/macro_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
 
@@ -17,9 +17,10 @@ namespace cambium {
 /// Ten actions: keep the lane, change left or change right, each at constant speed, faster or slower, but never faster
 /// than car following permits (Ding, Zhang, Chen, Shen 2020, section IV); and an emergency stop, so that one is
 /// among what is simulated. `faster`, `slower` and `stop` are accelerations [m/s^2].
-[[nodiscard]] inline MacroActions semantic_actions(double faster = 1.5, double slower = -2.0, double stop = -6.0) {
+template <class Macro = MacroActions>
+[[nodiscard]] Macro semantic_actions(double faster = 1.5, double slower = -2.0, double stop = -6.0) {
   using Kind = MacroAction::Kind;
-  MacroActions result;
+  Macro result;
   result.actions.clear();
   for (auto const kind : {Kind::stay, Kind::change_left, Kind::change_right})
     for (double const acceleration : {0.0, faster, slower}) result.actions.push_back({kind, acceleration, true});
@@ -35,16 +36,17 @@ enum class Intention : std::uint8_t {
   change_right,  ///< likewise
 };
 
-/// The others' actions, one for each `Intention`. `idm`: how they keep gaps; its desired speed is ignored.
-[[nodiscard]] inline MacroActions intended_actions(IdmParameters idm) {
+/// The others' actions, one for each `Intention`. `law`: how they keep gaps; its desired speed is ignored.
+template <class Macro = MacroActions>
+[[nodiscard]] Macro intended_actions(Idm const& law = {}) {
   using Kind = MacroAction::Kind;
-  idm.desired_speed = 100.0;  // no pull towards a desired speed: they keep the speed that they have
-  MacroActions result;
+  Macro result;
   result.actions = {{Kind::stay, 0.0, true},
                     {Kind::stay, 0.0, false},
                     {Kind::change_left, 0.0, true},
                     {Kind::change_right, 0.0, true}};
-  result.idm = idm;
+  result.law = law;
+  result.law.desired_speed = 100.0;  // no pull towards a desired speed: they keep the speed that they have
   return result;
 }
 
@@ -54,13 +56,14 @@ enum class Intention : std::uint8_t {
 template <class Actions>
 struct SemanticActions;
 
-template <>
-struct SemanticActions<MacroActions> {
-  using Others = IdmParameters;
+template <class... Heeds>
+struct SemanticActions<BasicMacroActions<Idm, Heeds...>> {
+  using Macro = BasicMacroActions<Idm, Heeds...>;
+  using Others = Idm;
   static constexpr bool drives = false;  ///< whether `MacroActions::nothing` is a choice: to drive like a driver
 
-  static MacroActions usual() { return semantic_actions(); }
-  static MacroActions intended(IdmParameters const& others) { return intended_actions(others); }
+  static Macro usual() { return semantic_actions<Macro>(); }
+  static Macro intended(Idm const& others) { return intended_actions<Macro>(others); }
   template <class Part>
   static Part& macro(Part& part) {
     return part;
@@ -72,16 +75,13 @@ struct SemanticActions<DriverActions<Driver>> {
   using Others = Driver;
   static constexpr bool drives = true;
 
-  static DriverActions<Driver> usual() {
-    DriverActions<Driver> result{.macro = semantic_actions()};
-    result.macro.rules.obey_signals = result.macro.rules.slow_for_bends = true;
-    return result;
-  }
+  static DriverActions<Driver> usual() { return {.macro = semantic_actions<typename DriverActions<Driver>::Macro>()}; }
   static DriverActions<Driver> intended(Driver const& others) {
-    if constexpr (requires { intended_actions(others.idm); })
-      return {.macro = intended_actions(others.idm), .driver = others};
+    using Macro = typename DriverActions<Driver>::Macro;
+    if constexpr (requires { intended_actions<Macro>(others.law); })
+      return {.macro = intended_actions<Macro>(others.law), .driver = others};
     else
-      return {.macro = intended_actions({}), .driver = others};
+      return {.macro = intended_actions<Macro>(), .driver = others};
   }
   template <class Part>
   static auto& macro(Part& part) {

@@ -311,7 +311,7 @@ struct PolicyTreePlanner {
   /// Adds the cost of the present state, which stands for `share` of the horizon.
   void add_step(Workspace& workspace, AgentId id, double share, PolicyCost& cost) const {
     auto const view = workspace.world->observe(id);
-    double const speed = view.state().speed, desired = Semantic::macro(actions).idm.desired_speed;
+    double const speed = view.state().speed, desired = Semantic::macro(actions).law.desired_speed;
     cost.efficiency += share * SpeedDeviation{desired}(*workspace.world, workspace.ego) / desired;
     auto const front = view.ahead(), rear = view.behind();
     bool const unsafe = (front && front->gap < weights.safe_gap(speed, front->speed)) ||

@@ -10,8 +10,8 @@
 
 #include <boost/container/static_vector.hpp>
 
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/lane_change/idm_proposal.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/actions/idm_proposal.hpp"
 #include "cambium/core/constants.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/terms.hpp"
@@ -176,7 +176,7 @@ struct ProposalPlanner {
   [[nodiscard]] SearchProblem compare(View const& view, Memory const& memory, Workspace& workspace,
                                       Budget& clock) const {
     auto simulated = driver;
-    simulated.changing.leaves_room = driver.changing.leaves_room && lane_changes;
+    simulated.lateral.leaves_room = driver.lateral.leaves_room && lane_changes;
     if (!workspace.predict(view, simulated, others)) return SearchProblem::not_in_world;
     agents_to_avoid(*workspace.world, workspace.ego, workspace.to_avoid);
     double const urgency_here = LaneChangeUrgency{}.at(view, view.place());
@@ -199,11 +199,12 @@ struct ProposalPlanner {
       if (lane_changes && is_valid(towards)) propose_at(0.0, towards, left);
     };
     // The change under way first: among equals, it goes on.
-    auto const under_way = memory.lane.change.target != at.corridor ? memory.lane.change.target : none<CorridorId>;
+    auto const under_way =
+        memory.lateral.change.target != at.corridor ? memory.lateral.change.target : none<CorridorId>;
     if (is_valid(under_way)) propose_change(under_way, view.place(under_way).lateral < 0.0);
     for (double const offset : offsets) propose_at(offset, none<CorridorId>, false);
     for (bool const left : {true, false})
-      if (piece.beside(left) != under_way && driver.changing.marks_permit(view, left))
+      if (piece.beside(left) != under_way && driver.lateral.marks_permit(view, left))
         propose_change(piece.beside(left), left);
     return choose(workspace);
   }
@@ -247,9 +248,9 @@ struct ProposalPlanner {
   [[nodiscard]] Plan<View> brake(View const& view, Memory& memory, double dt, Workspace const& workspace) const {
     auto const motion = ConstantAcceleration{-emergency_deceleration}.motion(std::max(0.0, view.state().speed), dt);
     auto const& proposal = workspace.candidates[workspace.best];
-    memory.lane = lane_memory(workspace, proposal, memory);
-    if (memory.lane.change.active()) return plan_lane_change(view, memory.lane.change, motion, dt);
-    return plan_to_center(view, memory.lane.change.bend, motion, dt, proposal.offset);
+    memory.lateral = lane_memory(workspace, proposal, memory);
+    if (memory.lateral.change.active()) return plan_lane_change(view, memory.lateral.change, motion, dt);
+    return plan_to_center(view, memory.lateral.change.bend, motion, dt, proposal.offset);
   }
 
   /// Resets the prediction world to its start, with ego about to drive the proposal.
@@ -258,16 +259,16 @@ struct ProposalPlanner {
     world.restore(workspace.start);
     world.template memory<IdmProposal>(world.roster().agents[workspace.ego].id) = {
         static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), proposal.towards,
-        lane_memory(workspace, proposal, memory)};
+        lane_memory(workspace, proposal, memory), memory.heeds};
   }
 
   /// The driver's memory with which a proposal begins: a change under way goes on only if it leads where the proposal
   /// does. No rest between changes: whether to change is the planner's choice.
-  [[nodiscard]] static LaneChanging::Memory lane_memory(Workspace const& workspace, ProposalScore const& proposal,
-                                                        Memory const& memory) {
+  [[nodiscard]] static IdmProposal::Lateral::Memory lane_memory(Workspace const& workspace,
+                                                                ProposalScore const& proposal, Memory const& memory) {
     auto const home = workspace.start.agents[workspace.ego].lane.corridor;
     auto const wanted = is_valid(proposal.towards) ? proposal.towards : home;
-    auto lane = memory.lane;
+    auto lane = memory.lateral;
     if (lane.change.target != wanted || proposal.offset != 0.0)
       lane.change = {none<CorridorId>, 0.0f, lane.change.bend};
     if (!lane.change.active()) lane.rest = 0.0f;
@@ -306,7 +307,7 @@ struct ProposalPlanner {
     proposal.speed_limit = 1.0 - static_cast<double>(too_fast) / std::max(1, driven);
     auto const& memory_then = world.template memory<IdmProposal>(world.roster().agents[ego].id);
     proposal.changes = is_valid(proposal.towards) && (world.frame().agents[ego].lane.corridor == proposal.towards ||
-                                                      memory_then.lane.change.target == proposal.towards);
+                                                      memory_then.lateral.change.target == proposal.towards);
   }
 
   /// Sets the marks for time to collision and comfort after a step from `before`.

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/law/follow_motion.hpp"
 #include "cambium/behavior/law/idm.hpp"
-#include "cambium/behavior/law/road_rules.hpp"
+#include "cambium/core/described.hpp"
 
 namespace cambium {
 
@@ -38,12 +37,8 @@ class AccLaw {
  public:
   static constexpr bool asks_acceleration = true;  ///< of leaders
 
-  /// Of a driver with IDM parameters `p` at `speed` [m/s]; `coolness` weighs the constant-acceleration heuristic, 0
-  /// to 1.
-  template <HasIdmParameters P>
-  AccLaw(P const& p, double coolness, double speed) : AccLaw(p, coolness, speed, p.desired_speed) {}
-
-  /// The same with another desired speed [m/s].
+  /// Of a driver with IDM parameters `p` at `speed` that desires `desired_speed` [m/s]; `coolness` weighs the
+  /// constant-acceleration heuristic, 0 to 1.
   template <HasIdmParameters P>
   AccLaw(P const& p, double coolness, double speed, double desired_speed)
       : terms_(p, desired_speed), comfortable_(p.comfortable_deceleration), coolness_(coolness), speed_(speed) {}
@@ -64,7 +59,8 @@ class AccLaw {
   [[nodiscard]] double desired_speed() const { return 1.0 / terms_.inverse_desired_speed; }  ///< [m/s]
 
   /// Motion over `dt` [s] behind a leader of constant speed; IDM's own, within `tolerance`, if `coolness` is 0.
-  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt, double tolerance = 1e-4) const {
+  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
+    constexpr double tolerance = 1e-4;  // [m/s^2], as in `Idm`
     if (coolness_ == 0.0) return detail::idm_motion(terms_, speed_, leader.gap, leader.speed, dt, tolerance);
     return follow_motion(*this, speed_, leader, dt);
   }
@@ -106,39 +102,5 @@ struct Acc {
     return at(speed, desired)(leader);
   }
 };
-
-/// Follows its lane corridor and the next vehicle in it by the ACC model: IDM without the overreaction to small gaps,
-/// such as after another vehicle has cut in, if the leader's acceleration makes them harmless.
-struct AdaptiveCruiseControl {
-  using Memory = RoadRules::Memory;
-
-  IdmParameters idm{};
-  double coolness = 0.99;
-  RoadRules rules{};
-
-  static constexpr char const* name = "adaptive_cruise_control";
-  static constexpr char const* summary =
-      "IDM, but where it brakes harder than the constant-acceleration heuristic c requires: (1 - coolness) a_IDM + "
-      "coolness (c + b tanh((a_IDM - c) / b))";
-  static constexpr char const* source = "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6";
-  static constexpr auto parameters() {
-    using Self = AdaptiveCruiseControl;
-    return parameter_list(parameter("idm", &Self::idm, "the underlying car following"),
-                          parameter("coolness", &Self::coolness, "-", Range{0, 1},
-                                    "0: IDM; 1: brakes no harder than the leader's acceleration requires"),
-                          parameter("rules", &Self::rules, "what it heeds besides other road users"));
-  }
-
-  template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    double const speed = std::max(0.0, view.state().speed);
-    auto p = idm;
-    p.desired_speed = rules.desired_speed(idm, view, speed);
-    AccLaw const law(p, coolness, speed);
-    constexpr double tolerance = 1e-4;  // [m/s^2], as IdmClassic's
-    return rules.keep_lane(view, Strictest(law), idm, tolerance, dt, memory);
-  }
-};
-static_assert(BehaviorModel<AdaptiveCruiseControl>);
 
 }  // namespace cambium

@@ -1,99 +1,111 @@
-#include "cambium/behavior/law/road_rules.hpp"
+#include "cambium/behavior/drivers.hpp"
 
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "cambium/map/opendrive.hpp"
+
+#include "gipps.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
 
 namespace {
 
-/// A user's law: Gipps 1981, eq. 2 and 3, read as the acceleration towards the speed after the reaction time.
-struct GippsLaw {
-  static constexpr bool asks_acceleration = false;
-  static constexpr double reaction_time = 0.67, fastest_acceleration = 1.7, braking = 3.0, gap_at_rest = 2.0;
-
-  double own_speed, desired;
-
-  [[nodiscard]] double speed() const { return own_speed; }
-  [[nodiscard]] double desired_speed() const { return desired; }
-  [[nodiscard]] double operator()(cb::Constraint const& ahead) const {
-    double const share = own_speed / desired, tau = reaction_time, b = braking;
-    double const free = own_speed + 2.5 * fastest_acceleration * tau * (1.0 - share) * std::sqrt(0.025 + share);
-    double const under_root =
-        b * b * tau * tau + b * (2.0 * (ahead.gap - gap_at_rest) - own_speed * tau + ahead.speed * ahead.speed / b);
-    double const safe = std::sqrt(std::max(0.0, under_root)) - b * tau;
-    return std::max(-8.0, (std::max(0.0, std::min(free, safe)) - own_speed) / tau);
-  }
-  [[nodiscard]] cb::LongitudinalMotion<double> motion(cb::Constraint const& ahead, double dt, double) const {
-    return cb::ConstantAcceleration{(*this)(ahead)}.motion(own_speed, dt);
-  }
+/// `Behavior` that heeds `Heed`, too, unless it does already.
+template <class Behavior, class Heed>
+struct Adding;
+template <class Law, class Lateral, class... Heeds, class Heed>
+struct Adding<cb::Driver<Law, Lateral, Heeds...>, Heed> {
+  using Behavior = std::conditional_t<cb::Heeding<Heeds...>::template contains<Heed>,
+                                      cb::Driver<Law, Lateral, Heeds...>, cb::Driver<Law, Lateral, Heeds..., Heed>>;
 };
-static_assert(cb::CarFollowingLaw<GippsLaw>);
-
-/// A user's driver by that law. It has no parameters of IDM, but the rules.
-struct Gipps {
-  using Memory = cb::RoadRules::Memory;
-
-  double desired_speed = 15.0;
-  double comfortable_deceleration = 1.67;
-  double lowest_acceleration = -8.0;
-  cb::RoadRules rules{};
-
-  static constexpr char const* name = "gipps";
-  static constexpr auto parameters() {
-    return cb::parameter_list(cb::parameter("desired_speed", &Gipps::desired_speed, "m/s", cb::Range{0.1, 100}, "free"),
-                              cb::parameter("rules", &Gipps::rules, "what it heeds"));
-  }
-  template <class View>
-  [[nodiscard]] cb::Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    double const speed = std::max(0.0, view.state().speed);
-    GippsLaw const law{speed, rules.desired_speed(*this, view, speed)};
-    return rules.keep_lane(view, cb::Strictest(law), *this, 0.0, dt, memory);
-  }
+template <class Law, class... Heeds, class Heed>
+struct Adding<cb::BasicMacroActions<Law, Heeds...>, Heed> {
+  using Behavior = std::conditional_t<cb::Heeding<Heeds...>::template contains<Heed>,
+                                      cb::BasicMacroActions<Law, Heeds...>, cb::BasicMacroActions<Law, Heeds..., Heed>>;
 };
-static_assert(!cb::HasIdmParameters<Gipps>);
+template <class Law, class... Heeds, class Heed>
+struct Adding<cb::BasicProposal<Law, Heeds...>, Heed> {
+  using Behavior = std::conditional_t<cb::Heeding<Heeds...>::template contains<Heed>, cb::BasicProposal<Law, Heeds...>,
+                                      cb::BasicProposal<Law, Heeds..., Heed>>;
+};
+template <class Driver, class Heed>
+struct Adding<cb::HeadwayHypotheses<Driver>, Heed> {
+  using Behavior = cb::HeadwayHypotheses<typename Adding<Driver, Heed>::Behavior>;
+};
+template <class Driver, class Heed>
+struct Adding<cb::RssConformant<Driver>, Heed> {
+  using Behavior = cb::RssConformant<typename Adding<Driver, Heed>::Behavior>;
+};
+template <class Driver, class Heed>
+struct Adding<cb::HumanDriver<Driver>, Heed> {
+  using Behavior = cb::HumanDriver<typename Adding<Driver, Heed>::Behavior>;
+};
+template <class Distribution, class Driver, class Heed>
+struct Adding<cb::BasicIdmStochastic<Distribution, Driver>, Heed> {
+  using Behavior = cb::BasicIdmStochastic<Distribution, typename Adding<Driver, Heed>::Behavior>;
+};
+template <class Behavior, class Heed>
+using Heeds = typename Adding<Behavior, Heed>::Behavior;
 
 #define DRIVERS                                                                                                        \
   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection,      \
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal, \
-      cb::RssConformant<cb::IdmClassic>, cb::HumanDriver<cb::IdmClassic>, Gipps
+      cb::RssConformant<cb::IdmClassic>, cb::HumanDriver<cb::IdmClassic>, cb::Driver<Gipps, cb::KeepLane>
 
 using Driven = Traffic<DRIVERS>;
 
 template <class Behavior>
-cb::RoadRules& rules_of(Behavior& behavior) {
+auto& heeds_of(Behavior& behavior) {
   if constexpr (requires { behavior.nominal; })
-    return behavior.nominal.rules;
+    return heeds_of(behavior.nominal);
   else if constexpr (requires { behavior.driver; })
-    return behavior.driver.rules;
+    return heeds_of(behavior.driver);
   else
-    return behavior.rules;
+    return behavior.heeds;
+}
+
+template <class Behavior>
+cb::KeepLane& lane_keeping_of(Behavior& behavior) {
+  if constexpr (requires { behavior.driver; })
+    return behavior.driver.lateral;
+  else if constexpr (requires { behavior.lateral.keep; })
+    return behavior.lateral.keep;
+  else
+    return behavior.lateral;
+}
+
+/// Passes `drive` the behaviour with and, unless it has it already, without a heed.
+template <class Behavior, class Heed, class Drive>
+void with_and_without(Drive const& drive) {
+  drive(Heeds<Behavior, Heed>{}, true);
+  if constexpr (!std::is_same_v<Behavior, Heeds<Behavior, Heed>>) drive(Behavior{}, false);
 }
 
 }  // namespace
 
 TEST_CASE_TEMPLATE("every driver stops before its lane's end if the rules say so", Behavior, DRIVERS) {
-  auto const drive = [](cb::RoadRules::LaneEnd lane_end) {
-    Behavior driver{};
-    rules_of(driver).lane_end = lane_end;
-    Driven world(straight_road(1, 300));
+  using Ending = Heeds<Behavior, cb::LaneEnd>;
+  auto const drive = [](cb::LaneEnd::Of ends) {
+    Ending driver{};
+    heeds_of(driver).template get<cb::LaneEnd>().of = ends;
+    Traffic<Ending> world(straight_road(1, 300));
     auto const id = world.add({.position = {100, -1.75}, .speed = 14, .behavior = driver});
     for (int i = 0; i < 300; ++i) REQUIRE(world.step(0.2));
     return world.record(id);
   };
-  auto const record = drive(cb::RoadRules::LaneEnd::always);
+  auto const record = drive(cb::LaneEnd::Of::corridor);
   CHECK(record.status == cb::AgentStatus::driving);
   CHECK(record.state.speed < 0.05);
   double const front = record.state.x + 3.6;
   CHECK(front < 285.0);
   CHECK(front > 280.0);
   // It drives on if the end is its destination, except under BARK's option.
-  CHECK(drive(cb::RoadRules::LaneEnd::before_destination).status != cb::AgentStatus::driving);
+  CHECK(drive(cb::LaneEnd::Of::route).status != cb::AgentStatus::driving);
 }
 
 TEST_CASE_TEMPLATE(
@@ -112,13 +124,13 @@ TEST_CASE_TEMPLATE(
 
 TEST_CASE("of a leader and the lane's end, the one that requires more braking counts") {
   Driven world(straight_road(1, 300));
-  cb::RoadRules const rules{.lane_end = cb::RoadRules::LaneEnd::always};
   auto const ahead = add(world, 1, 290.0, 0.0, cb::IdmClassic{}), id = add(world, 1, 250.0, 10.0, cb::IdmClassic{});
-  cb::IdmLaw const law(cb::IdmParameters{}, 10.0);
   auto const strictest = [&](auto const& view) {
-    cb::Strictest of_all(law);
-    rules.heed(view, of_all);
-    return of_all.constraint();
+    cb::Idm const law;
+    cb::Limits limits(law, 10.0, law.desired_speed);
+    cb::KeepLane{}.heed_next(view, limits);
+    cb::LaneEnd{.of = cb::LaneEnd::Of::corridor}.heed(view, limits, 0.2);
+    return limits.constraint();
   };
   auto const view = world.observe(id);
   auto const leader = strictest(view);
@@ -135,7 +147,8 @@ TEST_CASE("a driver keeps its leader's gap although a vehicle that merges is nea
   MergingRoad const merge;
   Driven world(merge.site.map);
   auto const place = [&](MergingRoad::Entrance const& from, double before, double speed, double desired) {
-    return merge.add(world, from, before, {.speed = speed, .behavior = cb::IdmClassic{.desired_speed = desired}});
+    return merge.add(world, from, before,
+                     {.speed = speed, .behavior = cb::IdmClassic{.law = {.desired_speed = desired}}});
   };
   auto const id = place(merge.through, 80.0, 12.0, 15.0), leader = place(merge.through, 58.0, 9.9, 9.9);
   auto alone = world;
@@ -154,7 +167,7 @@ TEST_CASE_TEMPLATE("vehicles that merge count, or are ignored, as the rules say"
   MergingRoad const merge;
   auto const acceleration = [&](bool has_ramp, cb::Merging merging) {
     Behavior behavior;
-    rules_of(behavior).merging = merging;
+    lane_keeping_of(behavior).merging = merging;
     Traffic<Behavior, cb::ConstantAcceleration> world(merge.site.map);
     auto const id = merge.add(world, merge.through, 60.0, {.speed = 12.0, .behavior = behavior});
     if (has_ramp) merge.add(world, merge.ramp, 36.0, {.speed = 12.0, .behavior = cb::ConstantAcceleration{}});
@@ -164,20 +177,6 @@ TEST_CASE_TEMPLATE("vehicles that merge count, or are ignored, as the rules say"
   double const alone = acceleration(false, cb::Merging::counts);
   CHECK(acceleration(true, cb::Merging::ignored) == alone);
   CHECK(acceleration(true, cb::Merging::counts) < alone - 0.3);
-}
-
-TEST_CASE("the strictest constraint is found whenever the law's response is asked for") {
-  cb::IdmLaw const law(cb::IdmParameters{}, 10.0);
-  cb::Strictest ahead(law);
-  CHECK(ahead.acceleration() == law.free());
-  ahead.heed({20.0, 0.0});
-  CHECK(ahead.acceleration() == law(20.0, 0.0));
-  ahead.heed({100.0, 9.0});
-  CHECK(ahead.constraint().gap == 20.0);
-  CHECK(ahead.acceleration() == law(20.0, 0.0));
-  ahead.heed({15.0, 0.0});
-  CHECK(ahead.constraint().gap == 15.0);
-  CHECK(ahead.acceleration() == law(15.0, 0.0));
 }
 
 TEST_CASE("the permitted speed is the limit, or a speed that still meets lower limits ahead") {
@@ -200,10 +199,10 @@ TEST_CASE("a driver that obeys speed limits keeps them on a town's roads") {
     if (!lane.drivable() || lane.length() < 60 || lane.speed_limits.empty()) continue;
     double const limit = cb::map::speed_limit_at(lane.speed_limits, 5.0);
     if (!std::isfinite(limit)) continue;
-    Driven world(map);
-    auto const id = enter(world, lane, 5.0,
-                          {.speed = 0.9 * limit,
-                           .behavior = cb::IdmClassic{.desired_speed = 50.0, .rules = {.obey_speed_limits = true}}});
+    using Obeying = cb::IdmClassic::Also<cb::SpeedLimit>;
+    Traffic<Obeying> world(map);
+    auto const id =
+        enter(world, lane, 5.0, {.speed = 0.9 * limit, .behavior = Obeying{.law = {.desired_speed = 50.0}}});
     for (int k = 0; k < 100 && world.status(id) == cb::AgentStatus::driving; ++k) {
       auto const& record = world.record(id);
       auto const& corridor = world.roster().agents[0].road->corridors[record.lane.corridor];
@@ -220,17 +219,15 @@ TEST_CASE_TEMPLATE("every driver stops at a red light until it is green if the r
                    Behavior, DRIVERS) {
   auto const map = support::road_with_signal("1000001");
   REQUIRE(map->lights().size() == 1);
-  for (bool const obeys : {true, false}) {
-    Behavior driver{};
-    rules_of(driver).obey_signals = obeys;
-    Driven world(map);
+  with_and_without<Behavior, cb::Signals>([&](auto const& driver, bool obeys) {
+    Traffic<std::remove_cvref_t<decltype(driver)>> world(map);
     world.set_light(map->lights()[0].id, {.cycle = 100.0, .green_begin = 60.0, .green_end = 90.0});
     auto const id = world.add({.position = {50, -1.75}, .speed = 13, .behavior = driver});
     for (int k = 0; k < 290; ++k) REQUIRE(world.step(0.2));
     CAPTURE(world.state(id).x);
     if (!obeys) {
       CHECK(world.state(id).x > 210.0);
-      continue;
+      return;
     }
     double const front = world.state(id).x + world.roster().agents[0].shape.front;
     CHECK(world.state(id).speed < 0.1);
@@ -238,13 +235,13 @@ TEST_CASE_TEMPLATE("every driver stops at a red light until it is green if the r
     CHECK(front > 197.5);
     for (int k = 0; k < 50; ++k) REQUIRE(world.step(0.2));
     CHECK(world.state(id).x > 210.0);
-  }
+  });
 }
 
 TEST_CASE_TEMPLATE("every driver stops once at a stop sign and goes on", Behavior, DRIVERS) {
-  Behavior driver{};
-  rules_of(driver).obey_signals = true;
-  Driven world(support::road_with_signal("206"));
+  using Obeying = Heeds<Behavior, cb::Signals>;
+  Obeying const driver{};
+  Traffic<Obeying> world(support::road_with_signal("206"));
   auto const id = world.add({.position = {100, -1.75}, .speed = 13, .behavior = driver});
   int stops = 0;
   for (int k = 0; k < 200 && world.state(id).x < 300.0; ++k) {
@@ -259,12 +256,11 @@ TEST_CASE_TEMPLATE("every driver stops once at a stop sign and goes on", Behavio
 TEST_CASE_TEMPLATE("every driver brakes comfortably and in time for a bend if the rules say so", Behavior, DRIVERS) {
   double const radius = 20.0;
   auto const map = road_with_bend(radius);
+  using Slowing = Heeds<Behavior, cb::Bends>;
   for (bool const slows : {true, false}) {
-    Behavior driver{};
-    auto& rules = rules_of(driver);
-    rules.slow_for_bends = slows;
-    rules.lateral_acceleration = 2.5;
-    Driven world(map);
+    Slowing driver{};
+    heeds_of(driver).template get<cb::Bends>().lateral_acceleration = slows ? 2.5 : 50.0;
+    Traffic<Slowing> world(map);
     auto const id = world.add({.position = {10, -1.75}, .speed = 14.0, .behavior = driver});
     double fastest = 0.0, hardest = 0.0;
     while (world.status(id) == cb::AgentStatus::driving && world.record(id).lane.s < 240.0) {
@@ -289,10 +285,8 @@ TEST_CASE_TEMPLATE("every driver meets a lower speed limit in time if the rules 
                        "<width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection></lanes></road>"
                        "</OpenDRIVE>")
                        .map;
-  for (bool const obeys : {true, false}) {
-    Behavior driver{};
-    rules_of(driver).obey_speed_limits = obeys;
-    Driven world(map);
+  with_and_without<Behavior, cb::SpeedLimit>([&](auto const& driver, bool obeys) {
+    Traffic<std::remove_cvref_t<decltype(driver)>> world(map);
     auto const id = world.add({.position = {20, -1.75}, .speed = 15.0, .behavior = driver});
     double before = 0.0, behind = 0.0, hardest = 0.0;
     for (int k = 0; k < 300 && world.status(id) == cb::AgentStatus::driving && world.state(id).x < 580.0; ++k) {
@@ -307,15 +301,14 @@ TEST_CASE_TEMPLATE("every driver meets a lower speed limit in time if the rules 
     CHECK((behind > 0.0 && behind < 6.3) == obeys);
     if (obeys) CHECK(before > 9.0);
     CHECK(hardest > -2.5);
-  }
+  });
 }
 
 TEST_CASE("macro actions that obey limits keep their speed on a road without a limit") {
-  cb::MacroActions driver;
-  driver.rules.obey_speed_limits = true;
-  Driven world(support::straight_road());
-  auto const id = world.add({.position = {20, -1.75}, .speed = 30.0, .behavior = driver});
-  world.memory<cb::MacroActions>(id).choose(cb::MacroActions::nothing);
+  using Actions = cb::BasicMacroActions<cb::Idm, cb::SpeedLimit>;
+  Traffic<Actions> world(support::straight_road());
+  auto const id = world.add({.position = {20, -1.75}, .speed = 30.0, .behavior = Actions{}});
+  world.memory<Actions>(id).choose(cb::MacroActions::nothing);
   for (int k = 0; k < 20; ++k) REQUIRE(world.step(0.2));
   CHECK(world.state(id).speed == doctest::Approx(30.0));
 }

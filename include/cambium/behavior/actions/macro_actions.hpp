@@ -11,11 +11,13 @@
 #include <boost/container/static_vector.hpp>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/driver/heeding.hpp"
+#include "cambium/behavior/driver/limits.hpp"
+#include "cambium/behavior/lateral/keep_lane.hpp"
+#include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
-#include "cambium/behavior/law/road_rules.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
@@ -27,12 +29,12 @@ struct MacroAction {
     stay,          ///< keeps the lane at `acceleration`
     change_left,   ///< changes to the lane on the left at `acceleration`
     change_right,  ///< likewise to the right
-    keep_gap,      ///< keeps the lane, and a gap by IDM and `leave_room`; ignores `acceleration`
+    keep_gap,      ///< keeps the lane, and a gap by its law and `leave_room`; ignores `acceleration`
   };
 
   Kind kind = Kind::stay;
   double acceleration = 0.0;  ///< [m/s^2]
-  bool keeps_gap = false;     ///< no faster than IDM and `LaneChangeCourse::leave_room` permit; implied by `keep_gap`
+  bool keeps_gap = false;  ///< no faster than its law and `LaneChangeCourse::leave_room` permit; implied by `keep_gap`
 
   static constexpr char const* name = "macro_action";
   static constexpr char const* summary = "one manoeuvre of `MacroActions`";
@@ -40,7 +42,7 @@ struct MacroAction {
     using P = MacroAction;
     return parameter_list(choice("kind", &P::kind, "stay|change_left|change_right|keep_gap", "the manoeuvre"),
                           parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "ignored by keep_gap"),
-                          parameter("keeps_gap", &P::keeps_gap, "no faster than IDM permits"));
+                          parameter("keeps_gap", &P::keeps_gap, "no faster than the law permits"));
   }
 
   friend bool operator==(MacroAction const&, MacroAction const&) = default;
@@ -52,22 +54,24 @@ struct MacroAction {
   return names[static_cast<std::size_t>(kind)];
 }
 
-/// Drives by one of a few manoeuvres along its lanes, within its `rules`: speed limits, bends and signals bound a
-/// manoeuvre's acceleration where the rules say so, by default nowhere. A search or a learner chooses a manoeuvre in
+/// Drives by one of a few manoeuvres along its lanes. Its `Heeds`, such as `SpeedLimit`, `Bends` and `Signals`, bound
+/// each manoeuvre; `Law` keeps gaps. A search or a learner chooses a manoeuvre in
 /// the agent's memory (`World::memory<MacroActions>(id).choose(number)`); it continues until the next is chosen. A lane
 /// change in progress is completed whatever is chosen meanwhile, except a change back. If a manoeuvre is not
 /// `available` when chosen, the vehicle keeps its lane at the manoeuvre's acceleration. The plan fails if the number
 /// does not exist.
-struct MacroActions {
+template <CarFollowingLaw Law, class... Heeds>
+struct BasicMacroActions {
   using Kind = MacroAction::Kind;
   static constexpr std::size_t capacity = 16;
   static constexpr std::uint8_t nothing = 255;  ///< chosen instead of an action: keep the lane and the speed
 
   struct Memory {
     LaneChange change{};  ///< towards the target corridor
-    RoadRules::Memory rules{};
+    [[no_unique_address]] typename Heeding<Heeds...>::Memory heeds{};
     std::uint8_t chosen = 0;  ///< number of the action
     bool is_new = true;       ///< it has not begun yet
+    bool adrift = true;       ///< it has entered or was set, and may be amid a lane change
 
     /// Begins action `number`, or `nothing`.
     void choose(std::size_t number) {
@@ -76,15 +80,16 @@ struct MacroActions {
     }
 
     void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
-    void was_set() { rules.was_set(); }
+    void was_set() { adrift = true; }
 
     static constexpr char const* name = "macro_actions_memory";
     static constexpr auto parameters() {
       using P = Memory;
       return parameter_list(parameter("change", &P::change, "towards the target corridor"),
-                            parameter("rules", &P::rules, "what the rules of the road remember"),
+                            parameter("heeds", &P::heeds, "of what it heeds"),
                             parameter("chosen", &P::chosen, "-", Range{0, 255}, "number of the action"),
-                            parameter("is_new", &P::is_new, "it has not begun yet"));
+                            parameter("is_new", &P::is_new, "it has not begun yet"),
+                            parameter("adrift", &P::adrift, "it may be amid a lane change"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;
@@ -99,28 +104,26 @@ struct MacroActions {
   boost::container::static_vector<MacroAction, capacity> actions{std::begin(usual), std::end(usual)};
   double highest_speed = 50.0;
   double minimum_remaining = 20.0;
-  IdmParameters idm{};
-  RoadRules rules{.crossing_time = 0.0};
+  Law law{};
+  [[no_unique_address]] Heeding<Heeds...> heeds{};
   LaneChangeCourse course{};
-  double tolerance = 1e-4;
 
   static constexpr char const* name = "macro_actions";
   static constexpr char const* summary =
-      "carries out what a search chooses: stay with an acceleration, change left or right, keep the gap by IDM; each "
+      "carries out what a search chooses: stay with an acceleration, change left or right, keep the gap; each "
       "if its precondition holds";
   static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
-    using P = MacroActions;
+    using P = BasicMacroActions;
     return parameter_list(
         parameter("actions", &P::actions, "the actions to choose from, 1 to 16"),
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "limit when accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
                   "no change into a lane that ends, or begins to merge into its neighbour, within this distance; "
                   "longer vehicles need more, as in their course"),
-        parameter("idm", &P::idm, "how gaps are kept"),
-        parameter("rules", &P::rules, "what each action heeds besides other road users"),
-        parameter("course", &P::course, "how long a change takes"),
-        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
+        parameter("law", &P::law, "by which it keeps gaps"),
+        parameter("heeds", &P::heeds, "what each action heeds besides other road users"),
+        parameter("course", &P::course, "how long a change takes"));
   }
 
   void check(std::string const& where) const {
@@ -128,7 +131,7 @@ struct MacroActions {
   }
 
   /// Creates the behaviour from a list of actions. Throws `ParameterError` for none, or more than `capacity`.
-  [[nodiscard]] static MacroActions of(std::initializer_list<MacroAction> list) {
+  [[nodiscard]] static BasicMacroActions of(std::initializer_list<MacroAction> list) {
     if (list.size() == 0 || list.size() > capacity)
       throw ParameterError(name, "has " + std::to_string(list.size()) + " actions", "give 1 to 16");
     return {.actions = list};
@@ -177,8 +180,8 @@ struct MacroActions {
   [[nodiscard]] Plan<View> carry_out(View const& view, Memory& memory, MacroAction const& action, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
     course.renew(memory.change, view.shape(), speed);
-    if (memory.rules.adrift) [[unlikely]] {
-      memory.rules.adrift = false;
+    if (memory.adrift) [[unlikely]] {
+      memory.adrift = false;
       if (!memory.change.active()) memory.change = course.under_way(view);
     }
     if (memory.is_new && is_change(action.kind)) {
@@ -192,9 +195,7 @@ struct MacroActions {
       }
     }
     memory.is_new = false;
-    auto const wanted = motion(view, memory.change, action, speed, dt);
-    return plan_lane_change(view, memory.change,
-                            rules.bound(view, idm, view.place().s, speed, wanted, dt, memory.rules), dt);
+    return plan_lane_change(view, memory.change, motion(view, memory, action, speed, dt), dt);
   }
 
   /// Target lane corridor of a change: the own one if a change to the other side is in progress.
@@ -212,36 +213,45 @@ struct MacroActions {
   }
 
   template <class View>
-  [[nodiscard]] LongitudinalMotion<double> motion(View const& view, LaneChange const& change, MacroAction const& action,
+  [[nodiscard]] LongitudinalMotion<double> motion(View const& view, Memory& memory, MacroAction const& action,
                                                   double speed, double dt) const {
-    double const desired = rules.desired_speed(idm, view, speed);
-    auto wanted = ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
-    if (rules.obey_speed_limits) {
-      auto limit = idm;
-      limit.desired_speed = highest_speed;
-      double const braking = idm.comfortable_deceleration;
-      auto const slower = motion_before_bend(speed, 0.0, rules.desired_speed(limit, view, speed), braking, braking, dt);
-      if (slower.speed < wanted.speed) wanted = slower;
-    }
-    IdmLaw const law(idm, speed, desired);
-    Strictest ahead(law);
-    if (action.kind == Kind::keep_gap || action.keeps_gap) {
-      rules.heed(view, ahead);
+    bool const gap_alone = action.kind == Kind::keep_gap, keeps_gap = gap_alone || action.keeps_gap;
+    auto const& change = memory.change;
+    Limits<Law> limits(law, speed, heeds.desired_speed(law, view, speed), heeds.merging(view, Merging::counts));
+    if (keeps_gap) {
+      KeepLane{}.heed_next(view, limits);
       if (change.active() && change.target != view.place().corridor)
-        if (auto const next = view.ahead(view.place(change.target), {.merging = rules.merging}))
-          ahead.heed({next->gap, next->speed});
-    } else if (auto const end = rules.lane_end_ahead(view)) {
-      ahead.heed(*end);
-    } else {
-      return wanted;
+        if (auto const next = view.ahead(view.place(change.target), {.merging = limits.merging}))
+          limits.heed(detail::constraint_beside<typename Limits<Law>::Response>(view, *next));
     }
-    auto const allowed = law.motion(ahead.constraint(), dt, tolerance);
-    auto const kept = action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
-    bool const keeps_gap = action.kind == Kind::keep_gap || action.keeps_gap;
-    auto const next = keeps_gap && !change.active() ? view.ahead({.merging = rules.merging}) : std::nullopt;
-    return next ? course.leave_room(view, *next, kept, dt) : kept;
+    heeds.heed(view, memory.heeds, limits, dt);
+    auto motion = gap_alone ? limits.motion(dt) : wanted(view, action, speed, dt);
+    if (!gap_alone && limits.is_constrained()) {
+      auto const allowed = limits.motion(dt);
+      if (allowed.speed < motion.speed) motion = allowed;
+    }
+    if (keeps_gap && !change.active())
+      if (auto const next = view.ahead({.merging = limits.merging}))
+        motion = course.leave_room(view, *next, motion, dt);
+    return limits.within(motion);
+  }
+
+  /// Motion by the acceleration of an action, no faster than the limits that it heeds.
+  template <class View>
+  [[nodiscard]] LongitudinalMotion<double> wanted(View const& view, MacroAction const& action, double speed,
+                                                  double dt) const {
+    auto const motion = ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
+    auto limit = law;
+    limit.desired_speed = highest_speed;
+    double const permitted = heeds.desired_speed(limit, view, speed), braking = law.comfortable_deceleration;
+    if (permitted >= highest_speed) return motion;
+    auto const slower = motion_before_bend(speed, 0.0, permitted, braking, braking, dt);
+    return slower.speed < motion.speed ? slower : motion;
   }
 };
+
+/// Those that heed nothing but the leader.
+using MacroActions = BasicMacroActions<Idm>;
 static_assert(BehaviorModel<MacroActions>);
 
 }  // namespace cambium

@@ -7,9 +7,9 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/course.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
-#include "cambium/behavior/safety/rss.hpp"
+#include "cambium/behavior/wrap/rss.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/geometry/angle.hpp"

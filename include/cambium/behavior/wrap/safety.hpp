@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/lateral/lane_change.hpp"
 
 namespace cambium {
 

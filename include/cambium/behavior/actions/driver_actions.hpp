@@ -3,33 +3,27 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "cambium/behavior/actions/macro_actions.hpp"
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/heed/bends.hpp"
+#include "cambium/behavior/heed/signals.hpp"
+#include "cambium/behavior/law/idm.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
-
-namespace detail {
-/// A model with its defaults that also slows down for bends, if it can.
-template <class Model>
-[[nodiscard]] Model slowing_for_bends() {
-  Model model{};
-  if constexpr (requires { model.rules.slow_for_bends; }) model.rules.slow_for_bends = true;
-  return model;
-}
-}  // namespace detail
 
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
 /// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap. Close
 /// behind a road user that stands, it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`), unless
-/// pedestrians are in the world. By default both slow down for bends.
+/// pedestrians are in the world. The macro actions slow down for bends and stop at lights, whatever the driver does.
 template <BehaviorModel Driver>
 struct DriverActions {
-  static constexpr std::uint8_t drive = MacroActions::nothing;  ///< chosen instead of the number of a macro action
+  using Macro = BasicMacroActions<Idm, Bends, Signals>;
+  static constexpr std::uint8_t drive = Macro::nothing;  ///< chosen instead of the number of a macro action
 
   struct Memory {
-    MacroActions::Memory macro{};
+    Macro::Memory macro{};
     MemoryOf<Driver> driver{};
     bool drives = true;
 
@@ -59,8 +53,8 @@ struct DriverActions {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  MacroActions macro = detail::slowing_for_bends<MacroActions>();
-  Driver driver = detail::slowing_for_bends<Driver>();
+  Macro macro{};
+  Driver driver{};
 
   static constexpr char const* name = "driver_actions";
   static constexpr char const* summary = "carries out what a search chooses: a macro action, or to drive like a driver";
@@ -83,7 +77,7 @@ struct DriverActions {
   template <class View>
   [[nodiscard]] bool needs_room(View const& view) const {
     constexpr double gentle = 1.5;  // [m/s^2]
-    auto const next = view.ahead({.merging = macro.rules.merging});
+    auto const next = view.ahead();
     if (!next || next->speed > LaneChangeCourse::slow || view.anybody_off_lanes()) return false;
     double const speed = std::max(0.0, view.state().speed);
     return next->gap < speed * speed / (2.0 * gentle) + macro.course.least_length(view.shape()) &&

@@ -20,15 +20,14 @@ concept HypothesisModel = BehaviorModel<B> && requires(B const driver, MemoryOf<
   driver.assume(memory, std::size_t{}, double{});
 };
 
-/// A `Driver` by IDM whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
+/// A driver whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
 /// about another driver, see `Mcts`. The assumed headway is its memory, which a search draws anew. With `Intersection`
 /// as the driver, the drivers about whom it learns obey the rules of junctions.
 template <BehaviorModel Driver>
 struct HeadwayHypotheses {
   static_assert(
-      requires(Driver driver) { driver.time_headway; } || requires(Driver driver) { driver.idm.time_headway; },
-      "cambium::HeadwayHypotheses<Driver>: Driver must have a time_headway, as IdmClassic does, or an idm with one, as "
-      "Intersection does");
+      requires(Driver driver) { driver.law.time_headway; },
+      "cambium::HeadwayHypotheses<Driver>: Driver must have a law with a time_headway, as every cambium::Driver does");
 
   static constexpr std::size_t most_regions = 8;
   static constexpr bool looks_beside = detail::looks_beside<Driver>();
@@ -88,11 +87,7 @@ struct HeadwayHypotheses {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     auto assumed = driver;
-    auto const headway = static_cast<double>(memory.time_headway);
-    if constexpr (requires { assumed.time_headway; })
-      assumed.time_headway = headway;
-    else
-      assumed.idm.time_headway = headway;
+    assumed.law.time_headway = static_cast<double>(memory.time_headway);
     return assumed.plan(view, memory.driver, dt);
   }
 };

@@ -3,7 +3,8 @@
 #include <cmath>
 #include <concepts>
 
-#include "cambium/behavior/lane_change/lane_changing.hpp"
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/actions/macro_actions.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 

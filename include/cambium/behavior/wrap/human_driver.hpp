@@ -9,9 +9,9 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/course.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/human/human_view.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/wrap/human_view.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"
