@@ -60,6 +60,7 @@
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/behavior/law/follow_motion.hpp"
+#include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/behavior/law/lane_option.hpp"

@@ -7,6 +7,8 @@
 #include <set>
 #include <vector>
 
+#include "cambium/behavior/pedestrian/pedestrian.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 #include "observed_traffic.hpp"
 #include "cambium/core/distributions.hpp"
 
@@ -294,4 +296,27 @@ TEST_CASE("a ray meets the nearest side of a hull, or misses it") {
   CHECK(cb::detail::distance_along(square, {5, 0}, {1, 0}) == doctest::Approx(0.5));
   for (Point const& ray : {Point(-1, 0), Point(0, 1)})
     CHECK(cb::detail::distance_along(square, {0, 0}, ray) == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("a view tells nothing of those that its observer does not see") {
+  using Set = cb::BehaviorSet<cb::IdmClassic, cb::Pedestrian>;
+  cb::World<Set, cb::InterpolateExecution, cb::SingleTrack, cb::OccludedObserver> world(support::map_of(
+      {.id = "1", .line = cb::map::lay_from({}, {{400.0}}), .sections = {{.right = cb::map::equal_lanes(1, 7.0)}}}));
+  auto const add_observer = [&](double x, double range) {
+    return world.add({.position = {x, -3.5}, .observer = cb::OccludedObserver{.range = range}});
+  };
+  auto const near = add_observer(10.0, 30.0), far = add_observer(20.0, 400.0);
+  world.add({.position = {150, -5.5}, .shape = cb::geometry::bicycle()});
+  world.add({.position = {200, -3.5}, .shape = cb::geometry::truck()});
+  world.add({.position = {250, 3.0},
+             .shape = cb::geometry::pedestrian(),
+             .behavior = cb::Pedestrian{},
+             .way = {{250.0, 3.0}, {250.0, -12.0}}});
+  REQUIRE(world.step(0.1));
+  CHECK(world.observe(far).anybody_leaves_room());
+  CHECK(world.observe(far).anybody_off_lanes());
+  CHECK(world.observe(far).largest_shape().holds(cb::geometry::truck()));
+  CHECK_FALSE(world.observe(near).anybody_leaves_room());
+  CHECK_FALSE(world.observe(near).anybody_off_lanes());
+  CHECK(world.observe(near).largest_shape() == cb::geometry::car());
 }

@@ -6,10 +6,16 @@
 #include <cmath>
 #include <string>
 
+#include "../support/maps.hpp"
 #include "../support/parameter_rows.hpp"
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/observer/delayed.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
 #include "cambium/observer/occluded.hpp"
+#include "cambium/world/world.hpp"
 
 namespace cb = cambium;
 
@@ -108,6 +114,32 @@ TEST_CASE("lasting errors of two steps are correlated by the cosine of the angle
   CHECK(correlation(42, 46) == doctest::Approx(std::cos(4 * step)).epsilon(0.03));
   CHECK(std::abs(correlation(40, 50)) < 0.03);
   CHECK(std::abs(correlation(43, 63)) < 0.03);
+}
+
+TEST_CASE("who sees speeds with errors sees accelerations with errors, new in each step or lasting") {
+  for (int const lasting : {1, 50}) {
+    cb::World<cb::BehaviorSet<cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack,
+              cb::ParametricObserver>
+        world(support::straight_road(1, 5000.0), {.seed = 5});
+    auto const id =
+        world.add({.position = {10, -1.75}, .speed = 10, .observer = {.others = {.speed = 0.5}, .lasting = lasting}});
+    world.add({.position = {50, -1.75}, .speed = 10});
+    double sum = 0.0, squares = 0.0;
+    constexpr int steps = 2000;
+    for (int k = 0; k < steps; ++k) {
+      auto const view = world.observe(id);
+      double const error = view.acceleration(*view.ahead());
+      sum += error;
+      squares += error * error;
+      REQUIRE(world.step(0.2));
+    }
+    CAPTURE(lasting);
+    double const deviation = std::sqrt(squares / steps), expected = std::sqrt(2.0) * 0.5;
+    CHECK(std::abs(sum / steps) < 0.05);
+    if (lasting == 1) CHECK(deviation == doctest::Approx(expected).epsilon(0.1));
+    if (lasting > 1) CHECK(deviation < 0.1 * expected);
+    if (lasting > 1) CHECK(deviation > 0.0);
+  }
 }
 
 TEST_CASE("perfect correlation is allowed, contradicting ones are refused in a sentence") {

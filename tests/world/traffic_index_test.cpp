@@ -166,8 +166,8 @@ Answer look(Twin const& twin, Somebody const& asker, double s, std::vector<Someb
     for (auto const& image : twin.images(other.lane, other.s)) {
       double const ahead = sign * (image.s - s);
       if (ahead < 0 || (ahead == 0 && (other.slot > asker.slot) != (sign > 0)) || ahead > cb::Look::horizon) continue;
-      double const gap = sign > 0 ? cb::map::gap_before_merge(s + asker.front, image.s - other.rear, image.free_until)
-                                  : cb::map::gap_before_merge(image.s + other.front, s - asker.rear, image.free_until);
+      double const gap = sign > 0 ? cb::gap_before_merge(s + asker.front, image.s - other.rear, image.free_until)
+                                  : cb::gap_before_merge(image.s + other.front, s - asker.rear, image.free_until);
       answer.gaps.emplace_back(&other, gap);
       answer.least = std::min(answer.least, gap);
       if (image.on_corridor) answer.nearest = std::min(answer.nearest, {ahead, gap});
@@ -362,7 +362,7 @@ void compare_each_ahead(View const& view, Count& count) {
       double const image = feeder.image(user.s);
       if (user.s < feeder.index_begin || user.s > feeder.index_end || image <= s || image > s + cb::Look::horizon)
         return;
-      double const gap = cb::map::gap_before_merge(front, image - user.rear, feeder.free_until);
+      double const gap = cb::gap_before_merge(front, image - user.rear, feeder.free_until);
       bool const is_covered = std::ranges::any_of(each, [&](cb::RoadUser const& found) {
         return found.gap <= gap + 1e-6 && found.s >= feeder.begin - 1e-6 && found.s <= feeder.end + 1e-6;
       });

@@ -150,11 +150,11 @@ class ObservedWorld {
     for (Slot const slot : index().off_lanes())
       if (detail::is_near(*world_, slot_, slot, distance) && sees(slot)) f(user(slot));
   }
-  /// Whether there are such agents in the world, seen or not. O(1).
-  [[nodiscard]] bool anybody_off_lanes() const { return !index().off_lanes().empty(); }
-  /// Whether an agent of the world drives aside from the middle of its lane and leaves `TrafficIndex::room_to_pass`
-  /// beside itself. O(1).
-  [[nodiscard]] bool anybody_leaves_room() const { return index().anybody_leaves_room(); }
+  /// Whether it sees such an agent anywhere. O(1); with an observer that may miss some, O(such agents).
+  [[nodiscard]] bool anybody_off_lanes() const { return sees_any(index().off_lanes()); }
+  /// Whether it sees an agent that drives aside from the middle of its lane and leaves `TrafficIndex::room_to_pass`
+  /// beside itself. O(1); with an observer that may miss some, O(such agents).
+  [[nodiscard]] bool anybody_leaves_room() const { return sees_any(index().aside()); }
 
   /// Calls `f(RoadUser)` for every other road user that reaches into lane coordinates `index_begin` to `index_end` of
   /// one lane (see `Lane::index_begin`); `s` is then the lane coordinate. O(log n + road users near).
@@ -180,8 +180,16 @@ class ObservedWorld {
   [[nodiscard]] geometry::Shape const& shape(RoadUser const& agent) const {
     return world_->roster().agents[index_of(slot_of(agent))].shape;
   }
-  /// Holds the shapes of all agents in the world, seen or not. O(1).
-  [[nodiscard]] geometry::Shape const& largest_shape() const { return world_->roster().largest_shape; }
+  /// Holds the shapes of the own agent and of all that it sees. O(1); with an observer that may miss some, O(agents).
+  [[nodiscard]] geometry::Shape largest_shape() const {
+    auto const& roster = world_->roster();
+    if constexpr (perfect) return roster.largest_shape;
+    auto largest = shape();
+    for (Slot slot{}; index_of(slot) < roster.agents.size(); ++slot)
+      if (slot != slot_ && record(slot).status == AgentStatus::driving && sees(slot))
+        largest = geometry::joined(largest, roster.agents[slot].shape);
+    return largest;
+  }
   /// Another agent's acceleration over the last step, along its heading [m/s^2], as brake lights would show it.
   [[nodiscard]] double acceleration(RoadUser const& agent) const {
     auto const slot = slot_of(agent);
@@ -266,6 +274,12 @@ class ObservedWorld {
       return true;
     else
       return detail::is_seen(*world_, slot_, slot);
+  }
+  [[nodiscard]] bool sees_any(std::span<Slot const> agents) const {
+    if constexpr (perfect)
+      return !agents.empty();
+    else
+      return std::any_of(agents.begin(), agents.end(), [this](Slot slot) { return slot != slot_ && sees(slot); });
   }
   [[nodiscard]] bool sees_object(Slot object) const {
     if constexpr (perfect)

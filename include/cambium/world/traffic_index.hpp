@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/world/detail/traffic_walk.hpp"
@@ -27,13 +28,13 @@ struct LaneStretch {
 struct ReachingEntries {
   std::vector<TrafficEntry> entries;
   double over_begin = 0.0, over_end = 0.0;  ///< largest extent of an agent beyond the begin (end) of its lane [m]
-  bool leaves_room = false;                 ///< an agent in its lane leaves `TrafficIndex::room_to_pass` beside itself
-  std::vector<Slot> off_lanes;              ///< agents on no drivable lane of their own
+  std::vector<Slot> aside;      ///< agents that leave `TrafficIndex::room_to_pass` beside them in their lane
+  std::vector<Slot> off_lanes;  ///< agents on no drivable lane of their own
 
   void clear() {
     entries.clear();
     over_begin = over_end = 0.0;
-    leaves_room = false;
+    aside.clear();
     off_lanes.clear();
   }
 
@@ -116,8 +117,8 @@ class TrafficIndex {
   /// Free width [m] beside an agent in its lane from which on another one might pass it there: a bicycle's, with 1.3 m.
   static constexpr double room_to_pass = 2.0;
 
-  /// Whether an agent drives aside from the middle of its lane and leaves `room_to_pass` beside itself.
-  [[nodiscard]] bool anybody_leaves_room() const { return reaching_.leaves_room; }
+  /// The agents that drive aside from the middle of their lane and leave `room_to_pass` beside themselves.
+  [[nodiscard]] std::span<Slot const> aside() const { return reaching_.aside; }
 
   /// The agents on no drivable lane of their own, such as pedestrians on free corridors, in the order of their slots.
   /// An agent in the middle of a sidewalk or another lane that is not drivable is not among them.
@@ -256,8 +257,8 @@ class TrafficIndex {
   }
   template <int sign, class Query>
   [[nodiscard]] static double gap_to(double s, double back, Query const& query, map::Feeder const& feeder) {
-    return sign > 0 ? map::gap_before_merge(query.s + query.front, s - back, feeder.free_until)
-                    : map::gap_before_merge(s + back, query.s - query.rear, feeder.free_until);
+    return sign > 0 ? gap_before_merge(query.s + query.front, s - back, feeder.free_until)
+                    : gap_before_merge(s + back, query.s - query.rear, feeder.free_until);
   }
 
   template <class Query>

@@ -128,7 +128,7 @@ struct ConflictAsker {
   double braking{};                        ///< deceleration by which vehicles can stop [m/s^2]
 
   [[nodiscard]] bool is_inside(map::Conflict const& conflict, map::ConflictZone const& zone) const {
-    return (front > zone.line + over_line || s > conflict.hold[is_large][is_large] + over_line) &&
+    return (front > zone.line + over_line || s > conflict.hold_among_equals(is_large) + over_line) &&
            s < conflict.lane_end;
   }
 };
@@ -160,7 +160,7 @@ template <class View>
 [[nodiscard]] inline bool leaves_first(map::Conflict const& conflict, ConflictUser const& other,
                                        ConflictAsker const& own, bool is_smaller) {
   auto const& user = other.user;
-  double const to_hold = other.hold - other.at, own_to_hold = conflict.hold[own.is_large][own.is_large] - own.s;
+  double const to_hold = other.hold - other.at, own_to_hold = conflict.hold_among_equals(own.is_large) - own.s;
   if (user.speed < standing_speed || !can_stop(own.speed, own_to_hold, own.braking)) return false;
   if (!can_stop(user.speed, to_hold, own.braking)) return true;
   double const speed = user.speed + pull_away * own.dt;

@@ -196,7 +196,7 @@ struct Conflicts {
     prepare(view, *first, own, limits.highest_speed, dt);
     double const farthest = own.front + view_ahead(own);
     auto end = first;
-    for (; end != conflicts.end() && end->hold[1][1] <= farthest; ++end) {
+    for (; end != conflicts.end() && end->first_hold() <= farthest; ++end) {
       auto const& conflict = *end;
       if (conflict.hull().end < own.s) continue;
       auto const& zones = conflict.zones[own.is_large];
@@ -229,7 +229,7 @@ struct Conflicts {
     own.dt = dt;
     own.braking = safe_deceleration;
     own.notes_standing = own.waited == 0.0 && own.speed < detail::starting_speed;
-    own.is_far = first.hold[1][1] - own.front > longest_stop(own, dt);
+    own.is_far = first.first_hold() - own.front > longest_stop(own, dt);
     own.highest = own.is_far ? own.desired_speed : std::min(own.desired_speed, highest);
   }
 

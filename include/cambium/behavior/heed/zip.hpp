@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cambium/behavior/law/constraint.hpp"
+#include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/described.hpp"
 
@@ -88,7 +89,7 @@ struct Zip {
     constexpr double trust = 0.7;
     if (!(to_merge > 0.0)) return gap;
     double const opening = trust * (other_speed - speed) * to_merge / std::max(speed, 1.0);
-    return std::min(gap + std::max(map::opening_share * to_merge, opening), std::max(gap, to_merge));
+    return std::min(gap + std::max(opening_share * to_merge, opening), std::max(gap, to_merge));
   }
 
   /// Counts the time at a standstill. A driver that has lost its patience and starts regains it only at driving speed.

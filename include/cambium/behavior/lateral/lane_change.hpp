@@ -79,7 +79,7 @@ CAMBIUM_NOINLINE [[nodiscard]] bool waits_at_line(View const& view, RoadUser con
   return std::ranges::any_of(corridor.signals,
                              [&](auto const& signal) { return signal.line > near && signal.line < far; }) ||
          std::ranges::any_of(corridor.conflicts, [&](auto const& conflict) {
-           return conflict.hull().end > near && conflict.hold[1][1] < far;
+           return conflict.hull().end > near && conflict.first_hold() < far;
          });
 }
 

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <limits>
 
+#include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/behavior/view.hpp"
 
 namespace cambium {
@@ -31,7 +32,7 @@ template <class Law, class View>
       double const opens = user.gap - gap;
       if (opens > 0.1)
         constraint.acceleration =
-            std::min(constraint.acceleration, opens < map::opening_share * soon * view.state().speed ? hardest : -1.0);
+            std::min(constraint.acceleration, opens < opening_share * soon * view.state().speed ? hardest : -1.0);
     }
   return constraint;
 }

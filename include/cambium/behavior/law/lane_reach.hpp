@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/frenet.hpp"
@@ -80,7 +81,7 @@ CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, Mer
       if (user.s < feeder.index_begin || user.s > feeder.index_end) return;  // it only extends into the stretch
       double const position = feeder.image(user.s);
       if (position <= s || (merging == Merging::by_rule && feeder.is_up_to_rule(position + user.front))) return;
-      double const gap = map::gap_before_merge(front, position - user.rear, feeder.free_until);
+      double const gap = gap_before_merge(front, position - user.rear, feeder.free_until);
       auto ahead = user;
       ahead.gap = gap;
       ahead.s = position;

@@ -77,7 +77,7 @@ template <class View>
   double const s = view.place().s, rear = s - view.shape().rear, front = s + view.shape().front;
   auto next = std::partition_point(conflicts.begin(), conflicts.end(),
                                    [rear](map::Conflict const& c) { return c.farthest_end < rear; });
-  for (; next != conflicts.end() && next->hold[1][1] < front + distance; ++next)
+  for (; next != conflicts.end() && next->first_hold() < front + distance; ++next)
     if (next->hull().end > rear)
       return std::max(0.0, view.map().options().conflict_shape.left - std::max(view.shape().left, view.shape().right));
   return std::numeric_limits<double>::infinity();

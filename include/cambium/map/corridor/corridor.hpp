@@ -58,19 +58,6 @@ struct Feeder {
   }
 };
 
-/// Share of the way to a merge that a follower adds to its gap, so that the gap opens bit by bit. (With half of the
-/// way, gaps opened too late: 172 of 20 000 dense merges collided.)
-inline constexpr double opening_share = 0.2;
-
-/// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one
-/// from `merge` on. Before that, the two may be side by side. A share of the follower's way to the merge is added, but
-/// the result is no larger than the distance to the leader or to the merge, whichever is farther.
-[[nodiscard]] inline double gap_before_merge(double follower_front, double leader_rear, double merge) {
-  double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
-  if (to_merge <= 0.0) return gap;
-  return std::min(gap + opening_share * to_merge, std::max(gap, to_merge));
-}
-
 /// A stop sign or a light for the corridor's traffic.
 struct CorridorSignal {
   double line{};  ///< where front ends stop: where the junction behind it begins, else the signal [m]
@@ -113,7 +100,13 @@ struct Conflict {
   std::array<std::array<double, 2>, 2> hold{};
   double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
 
+  /// The zone of two large vehicles, which holds all others.
   [[nodiscard]] ConflictZone const& hull() const { return zones[1][1]; }
+  /// Where everybody is before the junction's zones: no place to wait lies before it [m].
+  [[nodiscard]] double first_hold() const { return hold[1][1]; }
+  /// Where a vehicle waits that must leave room for large ones, and for those of its own size [m].
+  [[nodiscard]] double hold_for_all(bool is_large) const { return hold[is_large][1]; }
+  [[nodiscard]] double hold_among_equals(bool is_large) const { return hold[is_large][is_large]; }
   double farthest_end{};                ///< of the hulls of this one and those before it in the corridor [m]
   LightId light = none<LightId>;        ///< that stops the corridor's traffic
   LightId other_light = none<LightId>;  ///< that stops the other's traffic
@@ -145,7 +138,7 @@ struct LaneCorridor {
   geometry::Line left, right;               ///< borders
   IdVector<CorridorPiece, PieceId> pieces;  ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;              ///< sorted by `begin`
-  std::vector<Conflict> conflicts;          ///< sorted by `hold[1][1]`
+  std::vector<Conflict> conflicts;          ///< sorted by `first_hold`
   std::vector<Bend> bends;                  ///< sharper than 1 km of radius, sorted by `begin`
   double sharpest_bend = 0.0;               ///< the curvature of the sharpest of them [1/m]
   std::vector<CorridorSignal> signals;      ///< sorted by `line`
@@ -197,7 +190,7 @@ struct LaneCorridor {
     for (auto const& piece : pieces)
       if (piece.lane == lane)
         for (auto const& conflict : conflicts)
-          if (conflict.lane_end == piece.end) return conflict.hold[is_large][is_large] + piece.lane_offset;
+          if (conflict.lane_end == piece.end) return conflict.hold_among_equals(is_large) + piece.lane_offset;
     return std::numeric_limits<double>::infinity();
   }
 

@@ -78,7 +78,7 @@ CAMBIUM_COLD bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry 
   }
   if (std::abs(at.lateral) > on_path && left <= widths.left && right <= widths.right &&
       std::max(widths.left - left, widths.right - right) >= TrafficIndex::room_to_pass)
-    list.leaves_room = true;
+    list.aside.push_back(entry.slot);
   double const share = (at.index - lane.index_begin) / lane.length();
   auto const enter = [&](LaneId beside, double to_the_side) {
     if (is_valid(beside)) {

@@ -82,15 +82,14 @@ template <class World>
     return true;
 }
 
-/// The state of the agent in slot `other` as the agent in slot `own` observes it. A perfect observer returns the true
-/// state.
+/// The state of the agent in slot `other` as the agent in slot `own` observes it, with the errors of a step. A perfect
+/// observer returns the true state.
 template <class World>
-[[nodiscard]] decltype(auto) seen_state(World const& world, Slot own, Slot other) {
+[[nodiscard]] decltype(auto) seen_state_of_step(World const& world, Slot own, Slot other, std::uint32_t step) {
   auto const& observer = world.roster().agents[own].observer;
   auto const& record = world.frame().agents[other];
   auto const random = [&] {
-    return RandomStream(world.roster().seed, static_cast<std::uint32_t>(world.roster().agents[own].id),
-                        static_cast<std::uint32_t>(world.frame().step),
+    return RandomStream(world.roster().seed, static_cast<std::uint32_t>(world.roster().agents[own].id), step,
                         observation_purpose(world.roster().agents[other].id));
   };
   if constexpr (past_steps_of < typename World::Observer >> 0) {
@@ -99,6 +98,10 @@ template <class World>
   } else {
     return observer.observe(record.state, own == other, random());
   }
+}
+template <class World>
+[[nodiscard]] decltype(auto) seen_state(World const& world, Slot own, Slot other) {
+  return seen_state_of_step(world, own, other, static_cast<std::uint32_t>(world.frame().step));
 }
 
 /// Moves a plan that starts in the agent's believed state so that it starts in the true state: rotates and shifts the
@@ -120,15 +123,20 @@ void carry_over(Plan& plan, State const& believed, State const& truth) {
   }
 }
 
-/// The other agent's acceleration as observed [m/s^2].
+/// The other agent's acceleration as observed [m/s^2]: who sees speeds with errors sees accelerations with errors, as
+/// if by the difference of the speeds of two steps, averaged over a second.
 template <class World>
 [[nodiscard]] double seen_acceleration(World const& world, Slot own, Slot other) {
+  constexpr double averaged = 1.0;  // [s]
   auto const& record = world.frame().agents[other];
+  auto const step = static_cast<std::uint32_t>(world.frame().step);
+  auto const speed_at = [&](std::uint32_t of) { return seen_state_of_step(world, own, other, of).speed; };
+  double const error = (speed_at(step) - speed_at(step - 1)) / averaged;
   if constexpr (past_steps_of < typename World::Observer >> 0) {
     auto const back = steps_back(world.roster().agents[own].observer, own == other);
-    if (back > 0) return record.past.accelerations[back - 1];
+    if (back > 0) return record.past.accelerations[back - 1] + error;
   }
-  return record.action.acceleration;
+  return record.action.acceleration + error;
 }
 
 }  // namespace detail

@@ -273,7 +273,7 @@ class ConflictFinder {
 
   static void sort(std::vector<Conflict>& conflicts) {
     cambium::detail::stable_sort(conflicts, [](Conflict const& c) {
-      return std::tuple(c.hold[1][1], c.hull().begin, c.other, c.hull().other_begin, c.lane_end, c.zones[0][0].begin,
+      return std::tuple(c.first_hold(), c.hull().begin, c.other, c.hull().other_begin, c.lane_end, c.zones[0][0].begin,
                         c.zones[0][1].begin, c.zones[1][0].begin);
     });
     double end = -std::numeric_limits<double>::infinity();
