@@ -28,10 +28,10 @@ namespace cb = cambium;
 
 namespace {
 
-using Prediction = cb::World<cb::BehaviorSet<cb::DriverActions<cb::Intersection>, cb::Intersection>,
+using Prediction = cb::World<cb::BehaviorSet<cb::DriverActions<cb::UrbanDriver>, cb::UrbanDriver>,
                              cb::InterpolateExecution, cb::SingleTrack>;
 using Planner = cb::Mcts<Prediction>;
-using World = cb::World<cb::BehaviorSet<Planner, cb::IdmClassic, cb::Mobil, cb::Intersection>, cb::InterpolateExecution,
+using World = cb::World<cb::BehaviorSet<Planner, cb::IdmClassic, cb::Mobil, cb::UrbanDriver>, cb::InterpolateExecution,
                         cb::SingleTrack>;
 
 /// A winding road of three lanes, long enough for seven minutes.
@@ -61,7 +61,7 @@ World traffic() {
       mobil.law.desired_speed = speed;
       behavior = mobil;
     } else if (i % 3 == 2) {
-      cb::Intersection driver;
+      cb::UrbanDriver driver;
       driver.law.desired_speed = speed;
       behavior = driver;
     }

@@ -47,7 +47,7 @@ desk::World traffic(Settings const& settings, std::string const& map_text) {
     double const speed = cb::Uniform{5.0, 14.0}(random);
     desk::World::Behavior driver = cb::IdmClassic{.law = {.desired_speed = speed}};
     if (i % 3 == 1) driver = cb::Mobil{};
-    if (i % 3 == 2) driver = cb::Intersection{};
+    if (i % 3 == 2) driver = cb::UrbanDriver{};
     world.add({.position = {50.0 + 25.0 * i, i % 2 == 0 ? -5.25 : -1.75}, .speed = speed, .behavior = driver});
   }
   return world;

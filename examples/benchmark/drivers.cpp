@@ -32,8 +32,8 @@ Contender idm(examples::ParameterFile& file) {
 Contender mobil(examples::ParameterFile& file) {
   return with_speed(file, cb::Mobil{}, "mobil", [](auto& driver, double speed) { driver.law.desired_speed = speed; });
 }
-Contender intersection(examples::ParameterFile& file) {
-  return with_speed(file, cb::Intersection{}, "intersection",
+Contender urban(examples::ParameterFile& file) {
+  return with_speed(file, cb::UrbanDriver{}, "urban",
                     [](auto& driver, double speed) { driver.law.desired_speed = speed; });
 }
 

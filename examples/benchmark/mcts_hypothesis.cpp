@@ -3,5 +3,5 @@
 CAMBIUM_INSTANTIATE_PLANNING(benchmark::TestedWorld, cambium::ContenderBehavior<benchmark::Learning>);
 
 benchmark::Contender benchmark::mcts_hypothesis(examples::ParameterFile& file) {
-  return with_speed(file, search<cb::HeadwayHypotheses<cb::Intersection>>(), "mcts_hypothesis");
+  return with_speed(file, search<cb::HeadwayHypotheses<cb::UrbanDriver>>(), "mcts_hypothesis");
 }

@@ -35,7 +35,7 @@ namespace cb = cambium;
 
 /// The drivers that scenario files may name, and how these see.
 using Traffic =
-    cb::World<cb::BehaviorSet<cb::IdmClassic, cb::Mobil, cb::Intersection, cb::ConstantAcceleration, cb::Pedestrian>,
+    cb::World<cb::BehaviorSet<cb::IdmClassic, cb::Mobil, cb::UrbanDriver, cb::ConstantAcceleration, cb::Pedestrian>,
               cb::InterpolateExecution, cb::SingleTrack, cb::ObserverSet<cb::PerfectObserver, cb::OccludedObserver>>;
 
 using Spec = Traffic::AgentSpec;
@@ -44,22 +44,22 @@ using Spec = Traffic::AgentSpec;
 template <class... Behaviors>
 using Prediction = Traffic::WithBehaviors<cb::BehaviorSet<Behaviors...>>;
 
-/// What the tree searches choose from: macro actions, or to drive as one does at junctions.
-using Actions = cb::DriverActions<cb::Intersection>;
+/// What the tree searches choose from: macro actions, or to drive as one does in town.
+using Actions = cb::DriverActions<cb::UrbanDriver>;
 
 /// A tree search that expects `Others` of the others.
 template <class Others>
 using Search = cb::Mcts<Prediction<Actions, Others>, Actions, cb::TrafficReward, Others>;
 
-using Expecting = Search<cb::Intersection>;
-using Learning = Search<cb::HeadwayHypotheses<cb::Intersection>>;
-using PolicyTree = cb::PolicyTreePlanner<Prediction<Actions, cb::Intersection>>;
+using Expecting = Search<cb::UrbanDriver>;
+using Learning = Search<cb::HeadwayHypotheses<cb::UrbanDriver>>;
+using PolicyTree = cb::PolicyTreePlanner<Prediction<Actions, cb::UrbanDriver>>;
 using Proposals = cb::ProposalPlanner<Prediction<cb::IdmProposal, cb::ConstantAcceleration>>;
 using Frenet = cb::FrenetPlanner<Prediction<cb::ConstantAcceleration>>;
 
 /// All behaviours under test: they share a world, so that it is compiled once.
 using Tested =
-    cb::OneOf<cb::IdmClassic, cb::Mobil, cb::Intersection, Expecting, Learning, PolicyTree, Proposals, Frenet>;
+    cb::OneOf<cb::IdmClassic, cb::Mobil, cb::UrbanDriver, Expecting, Learning, PolicyTree, Proposals, Frenet>;
 using TestedWorld = cb::ContenderWorld<Traffic, Tested>;
 
 using Contender = cb::Contender<Traffic>;
@@ -92,7 +92,7 @@ template <class Planner, class SetSpeed>
 // The shipped behaviours; each planner in a source file of its own, because planners take long to compile.
 [[nodiscard]] Contender idm(examples::ParameterFile& file);
 [[nodiscard]] Contender mobil(examples::ParameterFile& file);
-[[nodiscard]] Contender intersection(examples::ParameterFile& file);
+[[nodiscard]] Contender urban(examples::ParameterFile& file);
 [[nodiscard]] Contender proposals(examples::ParameterFile& file);
 [[nodiscard]] Contender policy_tree(examples::ParameterFile& file);
 [[nodiscard]] Contender frenet(examples::ParameterFile& file);
@@ -104,7 +104,7 @@ template <class Planner, class SetSpeed>
 [[nodiscard]] inline std::vector<Contender> shipped(examples::ParameterFile& file) {
   return {idm(file),
           mobil(file),
-          intersection(file),
+          urban(file),
           proposals(file),
           policy_tree(file),
           frenet(file),

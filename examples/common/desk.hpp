@@ -88,10 +88,10 @@ struct SmoothFollower : cb::Idm {
   }
 };
 
-using Predicted = cb::World<cb::BehaviorSet<cb::DriverActions<cb::Intersection>, cb::Intersection>,
+using Predicted = cb::World<cb::BehaviorSet<cb::DriverActions<cb::UrbanDriver>, cb::UrbanDriver>,
                             cb::InterpolateExecution, cb::SingleTrack>;
 using Planner = cb::Mcts<Predicted>;
-using World = cb::World<cb::BehaviorSet<SmoothFollower, Planner, cb::Intersection, cb::Mobil, cb::IdmClassic>,
+using World = cb::World<cb::BehaviorSet<SmoothFollower, Planner, cb::UrbanDriver, cb::Mobil, cb::IdmClassic>,
                         cb::InterpolateExecution, cb::SingleTrack>;
 
 /// Its name in snapshots.

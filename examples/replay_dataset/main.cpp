@@ -38,11 +38,11 @@ namespace replay_dataset {
 namespace {
 
 namespace cb = cambium;
-using Sim = cb::World<cb::BehaviorSet<cb::StaticTrajectory, cb::IdmClassic, cb::Mobil, cb::Intersection>,
+using Sim = cb::World<cb::BehaviorSet<cb::StaticTrajectory, cb::IdmClassic, cb::Mobil, cb::UrbanDriver>,
                       cb::InterpolateExecution, cb::SingleTrack>;
 
 struct Settings {
-  std::string tracks, map, format = "interaction", driver = "intersection", solution, out = "out/replay_dataset";
+  std::string tracks, map, format = "interaction", driver = "urban", solution, out = "out/replay_dataset";
   double length = 10.0, every = 0.0, step = 0.1;
   std::uint64_t window = 0;
   std::optional<std::int64_t> ego;
@@ -93,7 +93,7 @@ void list(cb::RecordedTraffic const& traffic, std::vector<cb::RecordingWindow> c
 Sim::Behavior driver(std::string const& name) {
   if (name == "idm") return cb::IdmClassic{};
   if (name == "mobil") return cb::Mobil{};
-  return cb::Intersection{};
+  return cb::UrbanDriver{};
 }
 
 /// What became of a run.
@@ -240,8 +240,8 @@ int main(int argc, char** argv) {
       ->type_name("ID,...")
       ->delimiter(',');
   program.add_flag("--replace-all", settings.replaces_all, "all of them");
-  program.add_option("--driver", settings.driver, "idm, mobil or intersection")
-      ->check(CLI::IsMember({"idm", "mobil", "intersection"}))
+  program.add_option("--driver", settings.driver, "idm, mobil or urban")
+      ->check(CLI::IsMember({"idm", "mobil", "urban"}))
       ->capture_default_str();
   program.add_option("--step", settings.step, "time step [s]; with --solution that of the file")
       ->check(examples::number(0.01, 1.0))

@@ -129,7 +129,7 @@ def compare_commonroad(network, corpus, replay_dataset):
             compare(file, {name: row for name, row in ours.items() if name[0] != "-"}, theirs, named)
             compare_written(file, (scenario, problems), read(written))
             is_problem = theirs and problems.planning_problem_dict
-            solved = [driver for driver in ("idm", "mobil", "intersection") if is_problem and
+            solved = [driver for driver in ("idm", "mobil", "urban") if is_problem and
                       check_solution(replay_dataset, driver, file, scenario, problems, Path(folder) / "solution.xml")]
             solutions += len(solved)
     if solutions == 0:

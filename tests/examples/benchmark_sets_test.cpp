@@ -41,8 +41,8 @@ TEST_CASE("the exam has twelve situations in traffic of three temperaments, and 
   browser::TemporaryFolder const folder;
   using Seeds = std::map<std::string, std::set<std::uint64_t>>;  // by set: a title has one hash for each split
   auto const run = [&](std::string const& split, std::string const& name) {
-    program.output({"--set", "planners", "--behaviors", "idm,intersection", "--scenarios", "3", "--split", split,
-                    "--replays", "none", "--db", folder.file(name + ".db"), "--json", folder.file(name + ".json")});
+    program.output({"--set", "planners", "--behaviors", "idm,urban", "--scenarios", "3", "--split", split, "--replays",
+                    "none", "--db", folder.file(name + ".db"), "--json", folder.file(name + ".json")});
     Seeds seeds;
     cambium::ResultStore::existing(folder.file(name + ".db")).for_each([&](cambium::ResultRow const& row) {
       seeds[cambium::hash_text(row.key.set_hash)].insert(row.seed);

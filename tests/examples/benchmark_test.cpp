@@ -50,7 +50,7 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
   Program const program("benchmark");
   browser::TemporaryFolder const folder;
   std::vector<std::string> const what{
-      "--set", "merging,junction_lights", "--behaviors", "idm,mobil,intersection", "--scenarios", "40"};
+      "--set", "merging,junction_lights", "--behaviors", "idm,mobil,urban", "--scenarios", "40"};
   auto const with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), what.begin(), what.end());
     return more;

@@ -25,7 +25,7 @@ TEST_CASE("a recording is listed by windows, replayed, and driven anew by a mode
   };
   CHECK(has(run({"--list"}).out, "       0    0.1   10.0  2"));
   auto const replayed = run({"--out", out.file("a")});
-  CHECK(has(replayed.out, "9.9 s from 0.1 s of the recording, 2 road users, 0 of them driven by intersection"));
+  CHECK(has(replayed.out, "9.9 s from 0.1 s of the recording, 2 road users, 0 of them driven by urban"));
   CHECK(has(replayed.out, "collision: none"));
   CHECK(std::filesystem::exists(out.file("a") + "/replay.html"));
   auto const driven = run({"--replace-all", "--driver", "idm", "--out", out.file("b")});

@@ -171,11 +171,11 @@ TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_P
 namespace {
 
 /// A search that, by default, may drive by the rules at junctions and expects the others to.
-using RuledActions = DriverActions<Intersection>;
+using RuledActions = DriverActions<UrbanDriver>;
 using Ruled =
-    World<BehaviorSet<RuledActions, Intersection, HeadwayHypotheses<Intersection>>, InterpolateExecution, SingleTrack>;
+    World<BehaviorSet<RuledActions, UrbanDriver, HeadwayHypotheses<UrbanDriver>>, InterpolateExecution, SingleTrack>;
 using RuledSearch = Mcts<Ruled>;
-using RuledLearning = Mcts<Ruled, RuledActions, TrafficReward, HeadwayHypotheses<Intersection>>;
+using RuledLearning = Mcts<Ruled, RuledActions, TrafficReward, HeadwayHypotheses<UrbanDriver>>;
 using RuledTree = PolicyTreePlanner<Ruled>;
 
 template <class Planner = RuledSearch>
@@ -249,7 +249,7 @@ TEST_CASE_TEMPLATE(
       auto const site = find_junction_site(support::own_map(name));
       if (lights && site.map->lights().empty()) continue;
       auto const count = static_cast<int>(support::runs(4));
-      int const arrived = arrivals<Planner, Intersection>(
+      int const arrived = arrivals<Planner, UrbanDriver>(
           count, [&](std::uint32_t number) { return site.sample(3, number, {.lights = lights}); },
           [](auto& spec) {
             Planner planner;

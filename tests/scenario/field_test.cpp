@@ -145,7 +145,7 @@ Gaps turn_in(double side, std::uint64_t seed) {
     return JunctionSite::World::AgentSpec{
         .speed = 10.0,
         .shape = geometry::car(),
-        .behavior = Intersection{.law = {.desired_speed = 12.0 + 3.0 * uniform01(random)}},
+        .behavior = UrbanDriver{.law = {.desired_speed = 12.0 + 3.0 * uniform01(random)}},
         .route = routes[static_cast<std::size_t>(at - sources.begin())]};
   };
   struct Driver {

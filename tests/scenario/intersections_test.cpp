@@ -166,10 +166,11 @@ TEST_CASE("who reaches the end of its route sees a vehicle beyond it that still 
     for (LaneId const next : lane.successors) {
       JunctionSite::World world(site.map);
       auto const add = [&](LaneId where, double s, double speed, double desired) {
-        return world.add({.position = site.map->lane(where).path.pose(s).position(),
-                          .speed = speed,
-                          .behavior = Intersection{.law = {.desired_speed = desired}},
-                          .route = map::Route{{where}, site.map->lane(where).length()}});
+        return world.add(
+            {.position = site.map->lane(where).path.pose(s).position(),
+             .speed = speed,
+             .behavior = UrbanDriver{.law = {.desired_speed = desired}, .lateral = {.rule = {.threshold = 10.0}}},
+             .route = map::Route{{where}, site.map->lane(where).length()}});
       };
       auto const behind = add(entrance, lane.length() - 60.0, 10.0, 10.0);
       add(next, 0.5, 0.0, 0.1);
@@ -196,7 +197,7 @@ TEST_CASE("a vehicle larger than those that conflicts are found for is refused w
     JunctionSite::World world(site.map);
     world.add({.position = pose.position(),
                .shape = shape,
-               .behavior = Intersection{},
+               .behavior = UrbanDriver{},
                .route = site.random_route(site.entrances[0], random)});
   };
   CHECK_NOTHROW(add(geometry::bus()));
@@ -204,9 +205,9 @@ TEST_CASE("a vehicle larger than those that conflicts are found for is refused w
 }
 
 TEST_CASE("a planner that expects everybody to heed conflicts plans among vehicles too large for them") {
-  using Predicted = BehaviorSet<IdmProposal, Intersection>;
+  using Predicted = BehaviorSet<IdmProposal, UrbanDriver>;
   using Prediction = World<Predicted, InterpolateExecution, SingleTrack>;
-  using Planner = ProposalPlanner<Prediction, Intersection>;
+  using Planner = ProposalPlanner<Prediction, UrbanDriver>;
   auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
   World<BehaviorSet<Planner, ConstantAcceleration>, InterpolateExecution, SingleTrack> world(site.map);
   RandomStream random(1, 0, 0);
@@ -221,7 +222,7 @@ TEST_CASE("a planner that expects everybody to heed conflicts plans among vehicl
   enter(0, geometry::car(), Planner{});
   enter(1, geometry::articulated_truck(), ConstantAcceleration{});
   for (int i = 0; i < 50; ++i) REQUIRE(world.step(0.2));
-  auto prediction = world.observe(world.roster().agents[0].id).predict(predict_all_as<Predicted>(Intersection{}));
+  auto prediction = world.observe(world.roster().agents[0].id).predict(predict_all_as<Predicted>(UrbanDriver{}));
   REQUIRE(prediction.size() == 2);
   for (int i = 0; i < 50; ++i) REQUIRE(prediction.step(0.2));
 }

@@ -31,7 +31,7 @@ struct Flow {
 /// Drives vehicles into the junction from everywhere, as soon as there is room for them, with one of the `drivers`
 /// each.
 Flow saturate(JunctionSite const& site, double truck_share, bool lights, double dt, std::uint64_t seed,
-              std::vector<Intersection> const& drivers = {{}}) {
+              std::vector<UrbanDriver> const& drivers = {{}}) {
   JunctionSite::World world(site.map, {.seed = seed});
   auto const plans = site.sample(seed, 0, {.lights = lights}).lights;
   for (std::size_t i = 0; i < plans.size(); ++i) world.set_light(site.map->lights()[i].id, plans[i]);
@@ -95,8 +95,8 @@ TEST_CASE("a saturated crossing keeps flowing, with lights and without") {
 // three or more would gridlock.
 TEST_CASE("a saturated crossing keeps flowing, whatever the drivers' temperaments") {
   auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
-  auto const timid = presets::timid<Intersection>(), normal = presets::normal<Intersection>(),
-             aggressive = presets::aggressive<Intersection>();
+  auto const timid = presets::timid<UrbanDriver>(), normal = presets::normal<UrbanDriver>(),
+             aggressive = presets::aggressive<UrbanDriver>();
   for (auto const& [drivers, expected] : {std::pair{std::vector{timid}, 20.0},
                                           {std::vector{aggressive}, 40.0},
                                           {std::vector{timid, normal, aggressive}, 30.0}})
@@ -114,7 +114,6 @@ TEST_CASE("a saturated roundabout keeps flowing") { check_flow(support::own_map(
 // Two-way stop: 41 cars a minute by the Highway Capacity Manual 2000, gap acceptance (see examples/soak/capacity.hpp).
 TEST_CASE("nobody waits forever on a side road that enters a saturated main road") {
   check_flow(support::own_map("intersection_3way.xodr"), {41.3, 29.0});
-  check_flow(support::corpus_map("parking_demo.xodr"), {40.0, 36.0});
 }
 
 // Where all ways have to stop, each of four sends one vehicle per 9.47 s (Highway Capacity Manual 2000, exhibits 17-33

@@ -192,7 +192,7 @@ TEST_CASE("bytes name their models, so other worlds that have these read them") 
   auto const site = find_junction_site(load_opendrive(maps + "intersection_4way.xodr").map);
   CHECK(
       refusal(to_bytes(sampled(site, "intersection_4way.xodr", 1))) ==
-      "f.json: holds the model 'intersection', which is not among those of this program (idm_classic, mobil); read it "
+      "f.json: holds the model 'urban_driver', which is not among those of this program (idm_classic, mobil); read it "
       "with the type that was saved");
 }
 
@@ -223,7 +223,7 @@ TEST_CASE("a recipe draws what its sampler draws") {
   }
   CHECK(
       refusal(R"({"recipes": [{"map_file": "intersection_4way.xodr", "kind": "junction"}]})") ==
-      "f.json: recipes[0]: needs the behaviour intersection, which the program lacks; add it to the BehaviorSet of the "
+      "f.json: recipes[0]: needs the behaviour urban_driver, which the program lacks; add it to the BehaviorSet of the "
       "program's World");
 }
 

@@ -43,7 +43,7 @@ struct JunctionTraffic {
 /// `find_junction_site`.
 struct JunctionSite {
   /// The worlds that the sampled scenarios are for; `with_behaviors` makes them fit others.
-  using World = cambium::World<BehaviorSet<Intersection>, InterpolateExecution, SingleTrack>;
+  using World = cambium::World<BehaviorSet<UrbanDriver>, InterpolateExecution, SingleTrack>;
 
   std::shared_ptr<Map const> map;
   std::vector<LaneId> entrances;  ///< lanes where vehicles start

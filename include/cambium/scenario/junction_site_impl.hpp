@@ -40,7 +40,7 @@ CAMBIUM_COLD double room_before_zones(JunctionSite::World const& world, AgentId 
   if (corridor.width_at(at.s - agent.shape.rear) < agent.shape.width()) return -1.0;
   bool const large = !world.map().options().conflict_shape.holds(agent.shape);
   double hold = std::numeric_limits<double>::infinity();
-  for (auto const& conflict : corridor.conflicts) hold = std::min(hold, conflict.hold[large][1]);
+  for (auto const& conflict : corridor.conflicts) hold = std::min(hold, conflict.hold_for_all(large));
   return hold - at.s;
 }
 
@@ -67,8 +67,8 @@ CAMBIUM_COLD void try_to_add(JunctionSite const& site, JunctionTraffic const& tr
   if (traffic.scattered_ids) id = static_cast<AgentId>(random() >> 33);
   double const desired = 8.0 + 7.0 * uniform01(random);
   auto const idm = cycles ? presets::cyclist() : Idm{.desired_speed = desired};
-  Intersection driver{.law = idm};
-  driver.lateral.keep_to_side = cycles;
+  UrbanDriver driver{.law = idm};
+  driver.lateral.keep.keep_to_side = cycles;
   JunctionSite::World::AgentSpec spec{.position = pose.position(),
                                       .heading = pose.heading,
                                       .shape = shape,

@@ -129,6 +129,7 @@ class Limits {
   }
 
   Merging merging = Merging::counts;  ///< how road users count that merge into the lane
+  bool gives_way = false;             ///< it heeds conflicts
   double highest_speed = infinite;    ///< in the bends within the braking distance [m/s]
   bool is_at_light = false;           ///< it stands before a light that stops it
 

@@ -69,6 +69,7 @@ struct LaneChoice {
 ///   beyond count, too.
 /// - During: the vehicle follows the leaders in all lanes that it occupies. It turns back if the change becomes unsafe
 ///   (`abort_deceleration`) and the way back stays within the old lane.
+/// - Where ways cross: a driver that heeds conflicts begins no change that would not end before.
 /// - After: it rests for `rest` before the next change; after an abort for a random time, so that two drivers who
 ///   aborted for each other do not meet again.
 template <class Rule>
@@ -158,10 +159,13 @@ struct ChangeLanes {
       bool const may_change = memory.rest == 0.0f && !is_passing;
       auto const target = rule(LaneChoice<View, Limits, ChangeLanes>{view, limits, leader, end, may_change, *this});
       if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
-        memory.change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
-        memory.rest = static_cast<float>(rest + course.duration);
-        limits.forget_constraints();
-        limits = while_changing(view, limits, leader, memory.change);
+        auto const change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
+        if (!(limits.gives_way && enters_crossing(view, change))) {
+          memory.change = change;
+          memory.rest = static_cast<float>(rest + course.duration);
+          limits.forget_constraints();
+          limits = while_changing(view, limits, leader, change);
+        }
       }
     }
     if (!view.corridor().feeders.empty()) [[unlikely]]
@@ -290,6 +294,15 @@ struct ChangeLanes {
     auto random = view.random(purpose);
     memory.change = back;
     memory.rest = static_cast<float>(course.shortest_duration + rest * (0.5 + uniform01(random)));
+  }
+
+  /// Whether the vehicle would be where ways cross before the change ends. Others cannot tell where it goes there.
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] static bool enters_crossing(View const& view, LaneChange const& change) {
+    double const s = view.place().s, end = s + static_cast<double>(change.left);
+    return std::ranges::any_of(view.corridor().conflicts, [&](map::Conflict const& conflict) {
+      return conflict.kind == map::OverlapKind::crossing && conflict.hull().end > s && conflict.first_hold() < end;
+    });
   }
 
   /// Whether the vehicle fits into the lane `beside` when it arrives there, `ahead` [m]: lanes may open slowly.
