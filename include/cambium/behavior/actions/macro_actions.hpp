@@ -11,13 +11,13 @@
 #include <boost/container/static_vector.hpp>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/driver/heeding.hpp"
 #include "cambium/behavior/driver/limits.hpp"
 #include "cambium/behavior/lateral/keep_lane.hpp"
 #include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
@@ -55,11 +55,10 @@ struct MacroAction {
 }
 
 /// Drives by one of a few manoeuvres along its lanes. Its `Heeds`, such as `SpeedLimit`, `Bends` and `Signals`, bound
-/// each manoeuvre; `Law` keeps gaps. A search or a learner chooses a manoeuvre in
-/// the agent's memory (`World::memory<MacroActions>(id).choose(number)`); it continues until the next is chosen. A lane
-/// change in progress is completed whatever is chosen meanwhile, except a change back. If a manoeuvre is not
-/// `available` when chosen, the vehicle keeps its lane at the manoeuvre's acceleration. The plan fails if the number
-/// does not exist.
+/// each manoeuvre; `Law` keeps gaps. A search or a learner chooses a manoeuvre in the agent's memory
+/// (`World::memory<MacroActions>(id).choose(number)`); it continues until the next is chosen. A lane change in progress
+/// is completed whatever is chosen meanwhile, except a change back. If a manoeuvre is not `available` when chosen, the
+/// vehicle keeps its lane at the manoeuvre's acceleration. The plan fails if the number does not exist.
 template <CarFollowingLaw Law, class... Heeds>
 struct BasicMacroActions {
   using Kind = MacroAction::Kind;

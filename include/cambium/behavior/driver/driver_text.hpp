@@ -94,8 +94,7 @@ template <>
 inline constexpr DriverText driver_text<Idm, KeepLane, SpeedLimit, Bends, Signals, Pedestrians, Conflicts>{
     "intersection",
     "IDM; stops at red lights and stop signs; gives way by priorities of the map, signs, order of arrival, right "
-    "before "
-    "left, oncoming before turning; stops for vehicles predicted to come too close in time; resolves deadlocks",
+    "before left, oncoming before turning; stops for vehicles predicted to come too close in time; resolves deadlocks",
     "rules of the road (StVO sections 8 and 9); prediction: own"};
 template <>
 inline constexpr DriverText

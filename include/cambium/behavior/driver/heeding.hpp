@@ -58,9 +58,8 @@ template <class Owner, class Heed>
 
 /// What a driver heeds besides the road users in its lane, in this order. A heed is a described struct with a `summary`
 /// and one of these functions:
-/// - `heed(view, limits, dt)`, or with a `Memory` of its own `heed(view, memory, limits, dt)`, adds to the `Limits` of
-/// a
-///   step of `dt` [s];
+/// - `heed(view, limits, dt)`, or with a `Memory` of its own `heed(view, memory, limits, dt)`, adds to the
+///   `Limits` of a step of `dt` [s];
 /// - `double desired_speed(law, view, speed)` lowers the driver's desired speed [m/s].
 /// It may also have `Merging merging(view, merging)`, which changes how road users count that merge into the lane.
 template <class... Heeds>

@@ -6,8 +6,8 @@
 #include <limits>
 #include <optional>
 
-#include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/lateral/keep_lane.hpp"
+#include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/law/idm.hpp"
@@ -69,7 +69,7 @@ struct LaneChoice {
 ///   beyond count, too.
 /// - During: the vehicle follows the leaders in all lanes that it occupies. It turns back if the change becomes unsafe
 ///   (`abort_deceleration`) and the way back stays within the old lane.
-/// - Where ways cross: a driver that heeds conflicts begins no change that would not end before.
+/// - Junctions: a driver that heeds conflicts begins no change that would last until ways cross.
 /// - After: it rests for `rest` before the next change; after an abort for a random time, so that two drivers who
 ///   aborted for each other do not meet again.
 template <class Rule>
@@ -91,7 +91,6 @@ struct ChangeLanes {
   static constexpr char const* summary =
       "keeps its lane, and changes lanes by a rule: along a smooth course, followed by a rest; aborted if it becomes "
       "unsafe";
-
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = ChangeLanes;
