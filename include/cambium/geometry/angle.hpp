@@ -127,6 +127,11 @@ inline constexpr double slight_angle = 0.125;
   return {std::sin(x), std::cos(x)};
 }
 
+/// `sin_cos` of an angle that is usually slight, such as a heading error.
+[[nodiscard]] inline SinCos sin_cos_often_slight(double x) {
+  return std::abs(x) <= slight_angle ? sin_cos_slight(x) : sin_cos(x);
+}
+
 /// The same direction in (-pi, pi]; -pi becomes pi. An angle already in that range is returned unchanged, to the bit.
 /// Reduces by the exact pi: the absolute error is below 1e-15 for |angle| <= 1e5; beyond, it is that of the standard
 /// library's sine. NaN if `angle` is not finite.

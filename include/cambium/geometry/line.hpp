@@ -152,9 +152,13 @@ class Line {
   /// Index of the segment that contains `s`. O(log n).
   [[nodiscard]] std::uint32_t find(double s) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
-    auto const next = std::upper_bound(segments_.begin(), segments_.end(), s,
-                                       [](double value, Segment const& g) { return value < g.s; });
-    return next == segments_.begin() ? 0 : static_cast<std::uint32_t>(next - segments_.begin() - 1);
+    auto const* at = segments_.data();
+    for (std::size_t left = segments_.size(); left > 1;) {  // a binary search without unpredictable branches
+      std::size_t const half = left / 2;
+      at += s < at[half].s ? 0 : half;
+      left -= half;
+    }
+    return static_cast<std::uint32_t>(at - segments_.data());
   }
 
   /// The exact nearest point of the line, the first of several. O(n).

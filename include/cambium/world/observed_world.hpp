@@ -407,16 +407,21 @@ class ObservedWorld {
             .speed = observed(slot).speed};
   }
 
-  /// A road user found ahead (`sign` 1), behind (-1) or on a lane (0), as observed.
-  [[nodiscard]] RoadUser seen(RoadUser found, int sign) const {
-    if constexpr (!perfect) {
-      found.gap -= sign * shift(slot_);
-      if (is_valid(found.object)) return found;
-      double const moved = shift(found.slot);
-      found.gap += sign * moved;
-      found.s += moved;
-      found.speed += observed(found.slot).speed - record(found.slot).state.speed;
-    }
+  /// A road user found ahead (`sign` 1), behind (-1) or on a lane (0), as observed. Without errors it is `found`
+  /// itself: copied right after its members are written, it stalls.
+  [[nodiscard]] decltype(auto) seen(RoadUser const& found, int sign) const {
+    if constexpr (perfect)
+      return (found);
+    else
+      return shifted(found, sign);
+  }
+  [[nodiscard]] RoadUser shifted(RoadUser found, int sign) const {
+    found.gap -= sign * shift(slot_);
+    if (is_valid(found.object)) return found;
+    double const moved = shift(found.slot);
+    found.gap += sign * moved;
+    found.s += moved;
+    found.speed += observed(found.slot).speed - record(found.slot).state.speed;
     return found;
   }
   [[nodiscard]] std::optional<RoadUser> seen(std::optional<RoadUser> const& found, int sign) const {

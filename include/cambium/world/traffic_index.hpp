@@ -82,7 +82,7 @@ class TrafficIndex {
     reaching_.clear();
     Reach reach;
     std::size_t own = 0;
-    for (std::size_t i = 0; i < agents_.size(); ++i) {
+    for (std::size_t i = 0, listed = agents_.size(); i < listed; ++i) {
       if (!is_own(i)) continue;  // an extra entry of the last step
       agents_[own] = entry_of(agents_[i].slot, reaching_);
       reach.note(agents_[own++]);

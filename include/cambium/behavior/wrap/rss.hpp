@@ -121,23 +121,25 @@ struct RssSituation {
   bool in_own_lane = true;       ///< otherwise in a lane for oncoming traffic
 };
 
+/// The safe distance lengthwise [m]: of two vehicles in one direction that of the rear one, else that of two that meet;
+/// 0 where they have passed each other.
+[[nodiscard]] inline double rss_safe_gap(RssParameters const& p, RssSituation const& at) {
+  double const own = std::max(0.0, at.speed), other = std::abs(at.other_speed);
+  if (at.other_speed < 0.0 && !at.is_ahead) return 0.0;
+  if (at.other_speed < 0.0)
+    return at.in_own_lane ? rss_opposite_direction(p, own, other) : rss_opposite_direction(p, other, own);
+  return at.is_ahead ? rss_same_direction(p, own, other) : rss_same_direction(p, other, own);
+}
+
 /// The proper response to one road user: none unless the distances are unsafe both lengthwise and sideways. Of two
 /// vehicles in one direction, the rear one brakes; of two that meet, both brake. Vehicles beside each other do not
 /// brake, and no vehicle comes closer sideways while there is still room.
 [[nodiscard]] inline RssResponse rss_response(RssParameters const& p, RssSituation const& at) {
-  double const own = std::max(0.0, at.speed), other = std::max(0.0, at.other_speed);
-  bool const oncoming = at.other_speed < 0.0;
-  if (oncoming && !at.is_ahead && at.gap > 0.0) return {};  // it has passed
-  double const opposite = at.in_own_lane ? rss_opposite_direction(p, own, std::abs(at.other_speed))
-                                         : rss_opposite_direction(p, std::abs(at.other_speed), own);
-  double const needed = oncoming      ? opposite
-                        : at.is_ahead ? rss_same_direction(p, own, other)
-                                      : rss_same_direction(p, other, own);
-  double const aside = at.is_left ? rss_lateral(p, at.other_lateral_speed, at.lateral_speed)
-                                  : rss_lateral(p, at.lateral_speed, at.other_lateral_speed);
   RssResponse response;
-  if (at.gap > 0.0 && at.gap >= needed) return response;
-  if (at.side_gap > 0.0 && at.side_gap >= aside) return response;
+  if (at.gap > 0.0 && at.gap >= rss_safe_gap(p, at)) return response;
+  if (at.side_gap > 0.0 && at.side_gap >= (at.is_left ? rss_lateral(p, at.other_lateral_speed, at.lateral_speed)
+                                                      : rss_lateral(p, at.lateral_speed, at.other_lateral_speed)))
+    return response;
   bool const beside = at.gap <= 0.0 && at.side_gap > 0.0;
   response.brake = at.is_ahead && !beside;
   if (at.side_gap > 0.0) (at.is_left ? response.keep_off_left : response.keep_off_right) = true;

@@ -74,24 +74,26 @@ struct RssConformant {
   CAMBIUM_NOINLINE [[nodiscard]] RssResponse response(View const& view, typename View::State const& end,
                                                       double dt) const {
     RssResponse all;
-    auto const now = across(view, view.state(), view.shape()), then = across(view, end, view.shape());
-    double const speed = std::max(0.0, view.state().speed);
-    auto const p = within_steps(dt);
-    auto const visit = [&](RoadUser const& other) {
-      if (may_matter(p, view, other, speed)) respond(p, view, other, now, then, dt, all);
-    };
-    for_each_oncoming(p, view, speed, visit);
     auto const& at = view.place();
+    Step const step(within_steps(dt), std::max(0.0, view.state().speed), dt,
+                    across(view, view.state(), view.shape(), at.segment), across(view, end, view.shape(), at.segment));
+    auto const& [now, then] = step.places;
+    for_each_oncoming(step, view, [&](RoadUser const& other) {
+      if (may_matter(step, view, other)) respond(step, view, other, at.segment, all);
+    });
     /// Whether an object ahead is too close; visits the agents nearby.
     auto const too_close = [&](map::LanePlace const& from) {
       bool is_close = false;
       view.around(from, farthest, [&](RoadUser const& other) {
-        if (is_valid(other.agent)) return visit(other);
-        is_close = is_close || (other.s >= from.s && other.gap < rss_same_direction(p, speed, 0.0));
+        if (!is_valid(other.agent)) {
+          is_close = is_close || (other.s >= from.s && other.gap < step.same);
+        } else if (is_near(step, other, other.s >= from.s)) {
+          respond(step, view, other, view.corridor().center.find(at.s + (other.s - from.s)), all);
+        }
       });
       return is_close;
     };
-    all.brake = too_close(at) || all.brake || lets_merge_first(p, view, speed);
+    all.brake = too_close(at) || all.brake || lets_merge_first(step, view);
     for (bool const left : {true, false}) {
       auto const& piece = view.corridor().pieces[at.piece];
       auto const side = piece.beside(left);
@@ -109,6 +111,31 @@ struct RssConformant {
   static constexpr double rounding = 1e-9;
   static constexpr double farthest = 400.0;     // [m]
   static constexpr double before_merge = 15.0;  // [m]: bodies touch before lanes are one
+
+  /// Place, extent and velocity of a road user relative to the own lane corridor.
+  struct Across {
+    double s{}, front{}, rear{};       ///< position along the corridor, and extent ahead and behind [m]
+    double middle{}, left{}, right{};  ///< lateral positions of the reference point and the sides, left positive [m]
+    double along{}, aside{};           ///< speeds [m/s]
+  };
+
+  /// What the responses of one step to all road users have in common.
+  struct Step {
+    Step(RssParameters const& assumed, double own_speed, double seconds, Across const& now, Across const& then)
+        : p(assumed),
+          speed(own_speed),
+          dt(seconds),
+          places{now, then},
+          same(rss_same_direction(p, speed, 0.0)),
+          opposite(rss_opposite_direction(p, speed, speed)) {}
+
+    RssParameters p;
+    double speed, dt;  ///< [m/s], [s]
+    struct {
+      Across now, then;
+    } places;               ///< the own one, and where it plans to be at the end
+    double same, opposite;  ///< safe distances from those in its direction, and from those that come at its speed [m]
+  };
 
   /// The assumptions if nobody responds before the next step.
   [[nodiscard]] RssParameters within_steps(double dt) const {
@@ -159,9 +186,9 @@ struct RssConformant {
   /// distance until then, but there is no room to respond to it afterwards. So of two vehicles without a safe distance
   /// lengthwise, the one farther from the merge stays able to stop before it. O(feeders + agents on them).
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] static bool lets_merge_first(RssParameters const& p, View const& view, double speed) {
+  CAMBIUM_NOINLINE [[nodiscard]] static bool lets_merge_first(Step const& step, View const& view) {
     double const s = view.place().s, front = s + view.shape().front;
-    double const stop = front + rss_same_direction(p, speed, 0.0);
+    double const stop = front + step.same;
     bool lets = false;
     for (auto const& feeder : view.corridor().feeders) {
       if (feeder.begin > stop + farthest || lets) break;
@@ -170,43 +197,60 @@ struct RssConformant {
         if (!is_valid(other.agent) || other.s < feeder.index_begin || other.s > feeder.index_end) return;
         double const place = feeder.image(other.s), gap = place - other.rear - front;
         bool const is_ahead = place > s || (place == s && other.agent < view.id());
-        lets = lets || (is_ahead && gap < rss_same_direction(p, speed, std::max(0.0, other.speed)));
+        lets = lets || (is_ahead && gap < rss_same_direction(step.p, step.speed, std::max(0.0, other.speed)));
       });
     }
     return lets;
   }
 
+  /// False for an agent of a lane in the own direction that is too far away to matter, `is_ahead` or behind. Distances
+  /// along that lane may be longer than along the own one, on the outside of a bend.
+  [[nodiscard]] static bool is_near(Step const& step, RoadUser const& other, bool is_ahead) {
+    constexpr double share = 1.2, apart = 5.0;  // [-], [m]
+    auto const& p = step.p;
+    double const speed = std::abs(other.speed), gap = (other.gap - apart) * (1.0 / share);
+    if (other.speed < 0.0) return gap <= rss_opposite_direction(p, std::max(step.speed, speed), speed);
+    return gap <= (is_ahead ? rss_same_direction(p, step.speed, speed) : rss_same_direction(p, speed, step.speed));
+  }
+
   /// False for a road user too far away to matter, whatever it does.
   template <class View>
-  [[nodiscard]] static bool may_matter(RssParameters const& p, View const& view, RoadUser const& other, double speed) {
+  [[nodiscard]] static bool may_matter(Step const& step, View const& view, RoadUser const& other) {
     auto const &own = view.state(), &state = view.state(other);
-    double const fast = std::max(speed, std::abs(state.speed));
-    bool const same = std::cos(state.heading - own.heading) > 0.2 && state.speed >= 0.0;
-    double const far = same ? rss_same_direction(p, fast, 0.0) : rss_opposite_direction(p, fast, fast);
-    double const apart = std::hypot(state.x - own.x, state.y - own.y);
-    return apart <= far + 2.0 * (view.shape().radius() + view.shape(other).radius());
+    auto const& p = step.p;
+    double const dx = state.x - own.x, dy = state.y - own.y, fast = std::abs(state.speed);
+    double const sizes = 2.0 * (half_girth(view.shape()) + half_girth(view.shape(other)));
+    double const same = (fast > step.speed ? rss_same_direction(p, fast, 0.0) : step.same) + sizes;
+    double const apart = dx * dx + dy * dy;
+    if (apart <= same * same) return true;
+    double const opposite = (fast > step.speed ? rss_opposite_direction(p, fast, fast) : step.opposite) + sizes;
+    return apart <= opposite * opposite &&
+           !(state.speed >= 0.0 && geometry::sin_cos(state.heading - own.heading).cos > 0.2);
+  }
+  /// At least the radius of a shape [m], without a root.
+  [[nodiscard]] static double half_girth(geometry::Shape const& shape) {
+    return 0.5 * (shape.length() + shape.width());
   }
 
   /// Calls `f(RoadUser)` for the road users beside and ahead in the oncoming lanes of the own road.
   template <class View, class F>
-  static void for_each_oncoming(RssParameters const& p, View const& view, double speed, F const& f) {
+  static void for_each_oncoming(Step const& step, View const& view, F const& f) {
     constexpr double fast = 50.0, beside = 20.0;  // [m/s], [m]
     auto const& corridor = view.corridor();
     auto const& at = view.place();
-    double const from = at.s - beside, to = at.s + beside + rss_opposite_direction(p, speed, fast);
+    double const from = at.s - beside, to = at.s + beside + rss_opposite_direction(step.p, step.speed, fast);
     for (auto i = corridor.piece_at(from, at.piece); index_of(i) < corridor.pieces.size(); ++i) {
       auto const& piece = corridor.pieces[i];
       if (piece.begin > to) return;
       if (!is_valid(piece.lane)) continue;
       auto const& lane = view.map().lane(piece.lane);
-      double const begin = lane.station_at(std::max(from, piece.begin) + piece.lane_offset),
-                   end = lane.station_at(std::min(to, piece.end) + piece.lane_offset);
       for (auto const& entry : view.map().road(lane.road).sections[lane.section].lanes)
         for (auto const id : {entry.id, entry.opposite}) {
           if (!is_valid(id)) continue;
           auto const& other = view.map().lane(id);
           if (!other.drivable() || other.along_road == lane.along_road) continue;
-          auto const stretch = other.stretch_between(begin, end);
+          auto const stretch = other.stretch_between(lane.station_at(std::max(from, piece.begin) + piece.lane_offset),
+                                                     lane.station_at(std::min(to, piece.end) + piece.lane_offset));
           view.on_lane(other.index_begin + stretch.begin, other.index_begin + stretch.end, [&](RoadUser const& user) {
             if (is_valid(user.agent)) f(user);
           });
@@ -214,21 +258,15 @@ struct RssConformant {
     }
   }
 
-  /// Place, extent and velocity of a road user relative to the own lane corridor.
-  struct Across {
-    double s{}, front{}, rear{};       ///< position along the corridor, and extent ahead and behind [m]
-    double middle{}, left{}, right{};  ///< lateral positions of the reference point and the sides, left positive [m]
-    double along{}, aside{};           ///< speeds [m/s]
-  };
-
   template <class View>
-  [[nodiscard]] static Across across(View const& view, typename View::State const& state,
-                                     geometry::Shape const& shape) {
+  [[nodiscard]] static Across across(View const& view, typename View::State const& state, geometry::Shape const& shape,
+                                     std::uint32_t hint) {
     auto const& center = view.corridor().center;
-    auto const foot = center.project({state.x, state.y}, view.place().segment);
+    auto const foot = center.project({state.x, state.y}, hint);
     auto const& segment = center.segments()[foot.segment];
     double const inside = std::clamp(foot.s - segment.s, 0.0, segment.length);
-    auto const [sin, cos] = geometry::sin_cos(state.heading - (segment.heading + segment.curvature * inside));
+    auto const [sin, cos] =
+        geometry::sin_cos_often_slight(state.heading - (segment.heading + segment.curvature * inside));
     auto const lengthwise = geometry::extent_along(shape, cos, sin),
                sideways = geometry::extent_along(shape, sin, -cos);
     return {foot.s,
@@ -241,25 +279,28 @@ struct RssConformant {
             state.speed * sin};
   }
 
+  /// Adds the response to one road user, whose place along the corridor is near segment `hint`.
   template <class View>
-  static void respond(RssParameters const& p, View const& view, RoadUser const& other, Across const& now,
-                      Across const& then, double dt, RssResponse& all) {
-    auto const its = across(view, view.state(other), view.shape(other));
+  static void respond(Step const& step, View const& view, RoadUser const& other, std::uint32_t hint, RssResponse& all) {
+    auto const& p = step.p;
+    auto const& [now, then] = step.places;
+    auto const its = across(view, view.state(other), view.shape(other), hint);
     RssSituation at{.speed = now.along, .other_speed = its.along, .other_lateral_speed = its.aside};
     if (its.along < 0.0) {
       auto const sides = view.corridor().widths_at(now.s, view.place().segment);
       at.in_own_lane = -now.middle <= sides.right && now.middle <= sides.left;
     }
     at.is_ahead = its.s >= now.s;
-    at.is_left = its.middle > now.middle;
     at.gap = at.is_ahead ? its.s - its.rear - (now.s + now.front) : now.s - now.rear - (its.s + its.front);
+    if (at.gap > 0.0 && at.gap >= rss_safe_gap(p, at)) return;
+    at.is_left = its.middle > now.middle;
     at.side_gap = at.is_left ? its.right - now.left : now.right - its.left;
     all.brake = all.brake || rss_response(p, at).brake;
     if (!(at.side_gap > 0.0)) return;
     double const closing = std::max(0.0, at.is_left ? then.left - now.left : now.right - then.right);
     if (!(closing > rounding)) return;
     // The situation at the end of the plan if the other comes closer by as much.
-    double const toward = std::max(closing / dt, at.is_left ? then.aside : -then.aside);
+    double const toward = std::max(closing / step.dt, at.is_left ? then.aside : -then.aside);
     at.lateral_speed = at.is_left ? toward : -toward;
     at.side_gap = std::max(at.side_gap - 2.0 * closing, rounding);
     auto const one = rss_response(p, at);

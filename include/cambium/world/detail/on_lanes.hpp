@@ -141,11 +141,6 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
   return best;
 }
 
-/// Cosine of an angle that is usually small, such as a heading error.
-[[nodiscard]] inline double cosine_of_small(double angle) {
-  return std::abs(angle) <= geometry::slight_angle ? geometry::sin_cos_slight(angle).cos : geometry::sin_cos(angle).cos;
-}
-
 /// An agent on its path counts as within its lane up to this half width [m] and heading error [rad]. Lanes whose paths
 /// are closer than that overlap, and the index covers overlaps anyway.
 inline constexpr double usual_half_width = 1.5, usual_heading_error = 0.05;
@@ -179,7 +174,7 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
   auto const add = [&](Slot slot, ReachingEntries& reaching) {
     auto const& record = frame.agents[slot];
     auto const& agent = roster.agents[slot];
-    double const speed = record.state.speed * cosine_of_small(record.lane.heading_error);
+    double const speed = record.state.speed * geometry::sin_cos_often_slight(record.lane.heading_error).cos;
     TrafficEntry entry{
         record.lane.index, agent.shape.front, agent.shape.rear, speed, slot, static_cast<std::uint32_t>(agent.id)};
     if (record.status != AgentStatus::driving) {

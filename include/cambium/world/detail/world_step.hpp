@@ -50,8 +50,9 @@ class WorldStep {
   void advance_all() {
     auto const& roster = world_.roster();
     auto const& frame = world_.frame();
-    for (Slot slot{}; index_of(slot) < next_.size(); ++slot) {
-      if (next_.size() > 256 && index_of(slot) + 6 < next_.size()) {
+    auto const count = next_.size();
+    for (Slot slot{}; index_of(slot) < count; ++slot) {
+      if (count > 256 && index_of(slot) + 6 < count) {
         auto const soon = static_cast<Slot>(index_of(slot) + 6);
         auto const* const segment = road_under(roster, frame, soon);
         CAMBIUM_PREFETCH(segment);
@@ -102,7 +103,8 @@ class WorldStep {
   /// processor overlap several agents.
   CAMBIUM_FLATTEN void place_all() {
     auto const& roster = world_.roster();
-    for (Slot slot{}; index_of(slot) < next_.size(); ++slot) {
+    auto const count = next_.size();
+    for (Slot slot{}; index_of(slot) < count; ++slot) {
       auto& record = next_[slot];
       if (record.status != AgentStatus::driving) continue;
       double const mean_speed = 0.5 * (world_.frame().agents[slot].state.speed + record.state.speed);
