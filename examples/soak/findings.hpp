@@ -148,7 +148,7 @@ class Inspector {
     if (!last.is_new) {
       if (!walks) kilometres += 1e-3 * way;
       if (state.speed < -1e-6) report(Flaw::negative);
-      auto const along = cb::geometry::sin_cos(last.heading);
+      auto const along = cb::portable::sin_cos(last.heading);
       if (!walks && dx * along.cos + dy * along.sin < -0.01) report(Flaw::back);
       double const most = std::max(last.speed, state.speed) * dt, least = std::min(last.speed, state.speed) * dt;
       if (!walks && (way > 1.05 * most + 0.1 || way < 0.9 * least - 0.1)) {

@@ -26,6 +26,7 @@
 #include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/plan.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/core/state.hpp"
 #include "cambium/core/type_info.hpp"

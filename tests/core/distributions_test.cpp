@@ -71,50 +71,6 @@ struct Constant {
 
 }  // namespace
 
-TEST_CASE("the portable logarithm is within two units in the last place") {
-  RandomStream stream(1, 0, 0);
-  double worst = 0.0;
-  for (int i = 0; i < 200000; ++i) {
-    double const x = i % 2 == 0 ? uniform01(stream) + 0x1p-60 : std::exp(Uniform{-700, 700}(stream));
-    long double const exact = std::log(static_cast<long double>(x));
-    auto const unit = std::abs(std::nextafter(static_cast<double>(exact), infinity) - static_cast<double>(exact));
-    worst = std::max(worst, static_cast<double>(std::abs(detail::portable_log(x) - exact)) / unit);
-  }
-  CHECK(worst < 2.0);
-  CHECK(detail::portable_log(1.0) == 0.0);
-}
-
-TEST_CASE("the portable exponential is within two units in the last place") {
-  double worst = 0.0;
-  RandomStream random(5, 0, 0);
-  for (int i = 0; i < 200'000; ++i) {
-    double const x = i % 2 == 0 ? Uniform{-744.0, 709.7}(random) : Uniform{-3.0, 3.0}(random);
-    long double const exact = std::exp(static_cast<long double>(x));
-    double const rounded = static_cast<double>(exact);
-    double const unit = std::nextafter(rounded, std::numeric_limits<double>::infinity()) - rounded;
-    worst = std::max(worst, static_cast<double>(std::abs(detail::portable_exp(x) - exact)) / unit);
-  }
-  CHECK(worst < 2.0);
-  CHECK(detail::portable_exp(0.0) == 1.0);
-  CHECK(detail::portable_exp(-1e9) == 0.0);
-  CHECK(detail::portable_exp(-std::numeric_limits<double>::infinity()) == 0.0);
-  CHECK(detail::portable_exp(710.0) == std::numeric_limits<double>::infinity());
-  CHECK(detail::portable_exp(1e9) == std::numeric_limits<double>::infinity());
-  CHECK(std::isnan(detail::portable_exp(std::nan(""))));
-}
-
-TEST_CASE("portable powers are exact where the exponent is whole and the power fits, else close") {
-  for (unsigned n = 0; n <= 15; ++n) {
-    CHECK(detail::integer_power(11.0, n) == std::pow(11.0, n));
-    CHECK(detail::portable_power(11.0, n) == std::pow(11.0, n));
-  }
-  for (double x = 0.01; x < 100.0; x *= 1.3)
-    for (double const y : {0.1, 0.5, 2.5, 3.7, 40.3, -0.7, -3.0})
-      CHECK(detail::portable_power(x, y) == doctest::Approx(std::pow(x, y)).epsilon(1e-13));
-  CHECK(detail::portable_power(2.0, std::numeric_limits<double>::infinity()) ==
-        std::numeric_limits<double>::infinity());
-}
-
 TEST_CASE("the normal quantile inverts the exact distribution function") {
   // Values of the algorithm's paper (Wichura 1988, section 4).
   CHECK(detail::normal_quantile(0.25) == doctest::Approx(-0.6744897501960817).epsilon(1e-15));

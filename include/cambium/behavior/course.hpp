@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cmath>
-
 #include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 
 namespace cambium {
@@ -13,14 +12,14 @@ namespace detail {
 template <MotionState S>
 [[nodiscard]] double way_between(S const& a, S const& b) {
   double const turn = geometry::angle_difference(b.heading, a.heading);
-  return std::hypot(b.x - a.x, b.y - a.y) * (1.0 + turn * turn / 24.0);
+  return portable::hypot(b.x - a.x, b.y - a.y) * (1.0 + turn * turn / 24.0);
 }
 
 /// Sets position and heading of `state` at share `u` of the `way` [m] from `a` to `b`, on the cubic Hermite curve
 /// through both along their headings.
 template <MotionState S>
 void place_between(S const& a, S const& b, double way, double u, S& state) {
-  auto const from = geometry::sin_cos(a.heading), to = geometry::sin_cos(b.heading);
+  auto const from = portable::sin_cos(a.heading), to = portable::sin_cos(b.heading);
   double const dx = b.x - a.x, dy = b.y - a.y, w = u * u * (3.0 - 2.0 * u);
   double const p = u * (1.0 - u) * (1.0 - u) * way, q = -u * u * (1.0 - u) * way;
   state.x = a.x + w * dx + p * from.cos + q * to.cos;
@@ -28,7 +27,7 @@ void place_between(S const& a, S const& b, double way, double u, S& state) {
   double const slope = 6.0 * u * (1.0 - u), leave = (1.0 - u) * (1.0 - 3.0 * u) * way, come = u * (3.0 * u - 2.0) * way;
   double const tangent_x = slope * dx + leave * from.cos + come * to.cos,
                tangent_y = slope * dy + leave * from.sin + come * to.sin;
-  state.heading = a.heading + geometry::angle_difference(std::atan2(tangent_y, tangent_x), a.heading);
+  state.heading = a.heading + geometry::angle_difference(portable::atan2(tangent_y, tangent_x), a.heading);
 }
 
 /// Length [m] of the course from `start` through the states of the plan.
@@ -63,7 +62,7 @@ template <class View>
     if (left < 0.0) break;
   }
   if (left > 0.0) {
-    auto const along = geometry::sin_cos(next.heading);
+    auto const along = portable::sin_cos(next.heading);
     next.x += left * along.cos;
     next.y += left * along.sin;
   }

@@ -12,10 +12,11 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 
 // The same stream gives the same bits on every platform with IEEE doubles (no -ffast-math). Two rules make this so:
-//   - The code uses only +, -, *, /, sqrt and fma, which are correctly rounded everywhere. The library has its own log
-//     and exp, because those of libm differ between platforms.
+//   - The code uses only +, -, *, /, sqrt and fma, which are correctly rounded everywhere, and the functions of
+//     portable_math.hpp that do so, too.
 //   - No product feeds an addition outside std::fma, so compilers find nothing to contract into fused operations.
 //
 // Draws never throw. To check parameters, call `check_parameters(distribution)` once, outside the step path; it throws
@@ -52,85 +53,26 @@ template <BitStream Stream>
 
 namespace detail {
 
-/// c + d x + e x^2 + ... by Horner's rule with fused multiply-add.
-template <class... Rest>
-[[nodiscard]] inline double fused_polynomial(double x, double c, Rest... rest) {
-  if constexpr (sizeof...(rest) == 0) {
-    return c;
-  } else {
-    return std::fma(fused_polynomial(x, rest...), x, c);
-  }
-}
-
-/// Natural logarithm of a positive normal number, with the same bits on every platform; error below 2 units in the last
-/// place. Method: x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(f), f = (m - 1) / (m + 1), as a power
-/// series.
-[[nodiscard]] inline double portable_log(double x) {
-  constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // 45 bits: exact times any exponent
-  constexpr double ln2_low = 0x1.ef35793c76730p-45;
-  constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdu;
-  std::uint64_t const shifted = std::bit_cast<std::uint64_t>(x) - sqrt_half;
-  double const exponent = static_cast<double>(static_cast<std::int64_t>(shifted) >> 52);
-  double const m = std::bit_cast<double>((shifted & 0x000fffffffffffffu) + sqrt_half);
-  double const f = (m - 1.0) / (m + 1.0);
-  double const square = f * f;
-  double const twice = 2.0 * f;
-  double const series = fused_polynomial(square, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13, 1.0 / 15,
-                                         1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23);
-  double const log_m = std::fma(twice * square, series, twice);
-  return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
-}
-
-/// e^x, with the same bits on every platform; error below 2 units in the last place, or one subnormal step.
-/// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
-[[nodiscard]] inline double portable_exp(double x) {
-  constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
-  if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN
-  if (x > 710.0) return std::numeric_limits<double>::infinity();
-  double const k = std::floor(std::fma(x, 0x1.71547652b82fep+0, 0.5));
-  double const r = std::fma(-k, ln2_low, std::fma(-k, ln2_high, x));
-  double const series =
-      fused_polynomial(r, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
-                       1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
-  double const exp_r = 1.0 + std::fma(r * r, series, r);
-  auto const power_of_2 = [](std::int64_t n) { return std::bit_cast<double>((n + 1023) << 52); };
-  auto const exponent = static_cast<std::int64_t>(k), half = exponent / 2;  // two factors: 2^k may be subnormal
-  return exp_r * power_of_2(half) * power_of_2(exponent - half);
-}
-
-/// x^n with O(log n) multiplications.
-[[nodiscard]] constexpr double integer_power(double x, unsigned n) {
-  double result = 1.0;
-  for (; n > 0; n /= 2, x *= x)
-    if (n % 2 == 1) result *= x;
-  return result;
-}
-
-/// x^y for normal x > 0, with the same bits on every platform. For y in [0, 4096), the integer part of y is computed by
-/// multiplication.
-[[nodiscard]] inline double portable_power(double x, double y) {
-  if (!(y >= 0.0 && y < 4096.0)) return portable_exp(y * portable_log(x));
-  auto const whole = static_cast<unsigned>(y);
-  double const rest = y - whole;
-  return integer_power(x, whole) * (rest > 0.0 ? portable_exp(rest * portable_log(x)) : 1.0);
-}
-
 /// The tails of `normal_quantile`: near (probabilities down to about 1e-11) and far.
 [[nodiscard]] inline double normal_quantile_near(double r) {
-  return fused_polynomial(r, 1.42343711074968357734e0, 4.63033784615654529590e0, 5.76949722146069140550e0,
-                          3.64784832476320460504e0, 1.27045825245236838258e0, 2.41780725177450611770e-1,
-                          2.27238449892691845833e-2, 7.74545014278341407640e-4) /
-         fused_polynomial(r, 1.0, 2.05319162663775882187e0, 1.67638483018380384940e0, 6.89767334985100004550e-1,
-                          1.48103976427480074590e-1, 1.51986665636164571966e-2, 5.47593808499534494600e-4,
-                          1.05075007164441684324e-9);
+  return portable::detail::fused_polynomial(r, 1.42343711074968357734e0, 4.63033784615654529590e0,
+                                            5.76949722146069140550e0, 3.64784832476320460504e0,
+                                            1.27045825245236838258e0, 2.41780725177450611770e-1,
+                                            2.27238449892691845833e-2, 7.74545014278341407640e-4) /
+         portable::detail::fused_polynomial(r, 1.0, 2.05319162663775882187e0, 1.67638483018380384940e0,
+                                            6.89767334985100004550e-1, 1.48103976427480074590e-1,
+                                            1.51986665636164571966e-2, 5.47593808499534494600e-4,
+                                            1.05075007164441684324e-9);
 }
 [[nodiscard]] inline double normal_quantile_far(double r) {
-  return fused_polynomial(r, 6.65790464350110377720e0, 5.46378491116411436990e0, 1.78482653991729133580e0,
-                          2.96560571828504891230e-1, 2.65321895265761230930e-2, 1.24266094738807843860e-3,
-                          2.71155556874348757815e-5, 2.01033439929228813265e-7) /
-         fused_polynomial(r, 1.0, 5.99832206555887937690e-1, 1.36929880922735805310e-1, 1.48753612908506148525e-2,
-                          7.86869131145613259100e-4, 1.84631831751005468180e-5, 1.42151175831644588870e-7,
-                          2.04426310338993978564e-15);
+  return portable::detail::fused_polynomial(r, 6.65790464350110377720e0, 5.46378491116411436990e0,
+                                            1.78482653991729133580e0, 2.96560571828504891230e-1,
+                                            2.65321895265761230930e-2, 1.24266094738807843860e-3,
+                                            2.71155556874348757815e-5, 2.01033439929228813265e-7) /
+         portable::detail::fused_polynomial(r, 1.0, 5.99832206555887937690e-1, 1.36929880922735805310e-1,
+                                            1.48753612908506148525e-2, 7.86869131145613259100e-4,
+                                            1.84631831751005468180e-5, 1.42151175831644588870e-7,
+                                            2.04426310338993978564e-15);
 }
 
 /// Quantile (inverse distribution function) of the standard normal distribution for p in (0, 1), relative error 1e-16
@@ -139,14 +81,15 @@ template <class... Rest>
   double const q = p - 0.5;
   if (std::abs(q) <= 0.425) {
     double const r = std::fma(-q, q, 0.180625);
-    return q * (fused_polynomial(r, 3.3871328727963666080e0, 1.3314166789178437745e2, 1.9715909503065514427e3,
-                                 1.3731693765509461125e4, 4.5921953931549871457e4, 6.7265770927008700853e4,
-                                 3.3430575583588128105e4, 2.5090809287301226727e3) /
-                fused_polynomial(r, 1.0, 4.2313330701600911252e1, 6.8718700749205790830e2, 5.3941960214247511077e3,
-                                 2.1213794301586595867e4, 3.9307895800092710610e4, 2.8729085735721942674e4,
-                                 5.2264952788528545610e3));
+    return q *
+           (portable::detail::fused_polynomial(
+                r, 3.3871328727963666080e0, 1.3314166789178437745e2, 1.9715909503065514427e3, 1.3731693765509461125e4,
+                4.5921953931549871457e4, 6.7265770927008700853e4, 3.3430575583588128105e4, 2.5090809287301226727e3) /
+            portable::detail::fused_polynomial(
+                r, 1.0, 4.2313330701600911252e1, 6.8718700749205790830e2, 5.3941960214247511077e3,
+                2.1213794301586595867e4, 3.9307895800092710610e4, 2.8729085735721942674e4, 5.2264952788528545610e3));
   }
-  double const r = std::sqrt(-portable_log(q < 0.0 ? p : 1.0 - p));
+  double const r = std::sqrt(-portable::log(q < 0.0 ? p : 1.0 - p));
   double const magnitude = r <= 5.0 ? normal_quantile_near(r - 1.6) : normal_quantile_far(r - 5.0);
   return q < 0.0 ? -magnitude : magnitude;
 }
@@ -211,7 +154,7 @@ struct Exponential {
 
   template <BitStream Stream>
   [[nodiscard]] double operator()(Stream& stream) const {
-    return (0.0 - detail::portable_log(1.0 - uniform01(stream))) / rate;
+    return (0.0 - portable::log(1.0 - uniform01(stream))) / rate;
   }
 };
 

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
 namespace cambium {
@@ -61,7 +62,8 @@ struct KinematicPoint {
   }
 
   [[nodiscard]] Input input(Action const& action, State const& x) const {
-    return limited({action.acceleration, x.speed * std::tan(std::clamp(action.steering, -1.5, 1.5)) / wheel_base}, x);
+    return limited({action.acceleration, x.speed * portable::tan(std::clamp(action.steering, -1.5, 1.5)) / wheel_base},
+                   x);
   }
 };
 static_assert(DynamicModel<KinematicPoint>);

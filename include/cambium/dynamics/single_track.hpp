@@ -5,8 +5,8 @@
 #include <type_traits>
 
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
-#include "cambium/geometry/angle.hpp"
 
 namespace cambium {
 
@@ -25,7 +25,7 @@ struct SingleTrackInput {
   // division.
   double const across = lateral_acceleration_limit * wheel_base, square = speed * speed;
   if (limit <= 0.785 && limit * square <= 0.785 * across) return limit;
-  return std::min(limit, std::atan(across / square));
+  return std::min(limit, portable::atan(across / square));
 }
 
 /// Sine and cosine of any scalar type.
@@ -34,15 +34,15 @@ struct Direction {
   Scalar sin, cos;
 };
 
-/// Sine and cosine of `angle` [rad] for any scalar type; `double` uses `geometry::sin_cos`.
+/// Sine and cosine of `angle` [rad] for any scalar type; `double` uses `portable::sin_cos`.
 template <class Scalar>
 [[nodiscard]] Direction<Scalar> direction_of(Scalar const& angle) {
   if constexpr (std::is_same_v<Scalar, double>) {
-    auto const [s, c] = geometry::sin_cos(angle);
+    auto const [s, c] = portable::sin_cos(angle);
     return {s, c};
   } else {
-    using std::cos;
-    using std::sin;
+    using portable::cos;
+    using portable::sin;
     return {sin(angle), cos(angle)};
   }
 }
@@ -51,11 +51,11 @@ template <class Scalar>
 template <class Scalar>
 [[nodiscard]] Scalar steering_curvature(Scalar const& steering, double wheel_base) {
   if constexpr (std::is_same_v<Scalar, double>) {
-    if (std::abs(steering) <= geometry::slight_angle) return geometry::tangent_slight(steering) / wheel_base;
-    auto const [s, c] = geometry::sin_cos_bounded(steering);
+    if (std::abs(steering) <= portable::slight_angle) return portable::tan_slight(steering) / wheel_base;
+    auto const [s, c] = portable::sin_cos_bounded(steering);
     return s / (c * wheel_base);
   } else {
-    using std::tan;
+    using portable::tan;
     return tan(steering) / Scalar(wheel_base);
   }
 }
@@ -118,10 +118,10 @@ static_assert(DynamicModel<SingleTrack>);
   double const middle = x.speed + half * u.acceleration, end = x.speed + dt * u.acceleration;
   double const curvature = steering_curvature(u.steering, model.wheel_base);
   double const turn_2 = half * x.speed * curvature, turn_3 = half * middle * curvature;
-  bool const slight = std::max(std::abs(turn_2), std::abs(turn_3)) <= geometry::slight_angle;
-  auto const first = geometry::sin_cos(x.heading);
-  auto const second = slight ? geometry::sin_cos_slight(turn_2) : geometry::sin_cos(turn_2);
-  auto const third = slight ? geometry::sin_cos_slight(turn_3) : geometry::sin_cos(turn_3);
+  bool const slight = std::max(std::abs(turn_2), std::abs(turn_3)) <= portable::slight_angle;
+  auto const first = portable::sin_cos(x.heading);
+  auto const second = slight ? portable::sin_cos_slight(turn_2) : portable::sin_cos(turn_2);
+  auto const third = slight ? portable::sin_cos_slight(turn_3) : portable::sin_cos(turn_3);
   // The fourth turn is twice the third one: double-angle formulas.
   double const sin_4 = 2.0 * third.sin * third.cos, cos_4 = 1.0 - 2.0 * third.sin * third.sin;
   // Weighted sum of the stage velocities, along and across the first heading.

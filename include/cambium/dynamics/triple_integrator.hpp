@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
 namespace cambium {
@@ -94,7 +95,7 @@ struct TripleIntegrator {
   }
 
   [[nodiscard]] Input limited(Input const& u, State const&) const {
-    double const length = std::hypot(u.x, u.y);
+    double const length = portable::hypot(u.x, u.y);
     if (!(length > jerk_limit)) return u;
     return {u.x * (jerk_limit / length), u.y * (jerk_limit / length)};
   }
@@ -102,7 +103,7 @@ struct TripleIntegrator {
   /// The jerk that brings the accelerations along and across the path to the action's. Turning the acceleration vector
   /// along with the vehicle has priority within the jerk limit, so that braking stays braking.
   [[nodiscard]] Input input(Action const& action, State const& x) const {
-    double const tangent = std::tan(std::clamp(action.steering, -steepest, steepest));
+    double const tangent = portable::tan(std::clamp(action.steering, -steepest, steepest));
     double const wanted = std::clamp(action.acceleration, lowest_acceleration, highest_acceleration);
     double const across = held_lateral(x.speed * x.speed * tangent / wheel_base, x.speed, x.acceleration);
     double const forward = (wanted - x.acceleration) / response_time,
@@ -111,7 +112,7 @@ struct TripleIntegrator {
     double const turn_along = -x.lateral_acceleration * yaw_rate, turn_across = x.acceleration * yaw_rate;
     double const share = share_within(turn_along, turn_across, forward, left);
     double const along_jerk = turn_along + share * forward, across_jerk = turn_across + share * left;
-    auto const [sin, cos] = geometry::sin_cos(x.heading);
+    auto const [sin, cos] = portable::sin_cos(x.heading);
     return limited({along_jerk * cos - across_jerk * sin, along_jerk * sin + across_jerk * cos}, x);
   }
 
@@ -164,7 +165,8 @@ struct TripleIntegrator {
     // a_lat sqrt(a_lat^2 + a^2) / v = jerk / 2, solved for a_lat^2.
     double const square = acceleration * acceleration, jerk = jerk_limit * speed * jerk_limit * speed;
     double const turned = std::sqrt(0.5 * jerk / (square + std::sqrt(square * square + jerk)));
-    double const most = std::min({lateral_acceleration_limit, turned, speed * speed * std::tan(steepest) / wheel_base});
+    double const most =
+        std::min({lateral_acceleration_limit, turned, speed * speed * portable::tan(steepest) / wheel_base});
     return std::clamp(lateral, -most, most);
   }
 

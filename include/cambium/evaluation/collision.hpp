@@ -13,7 +13,7 @@
 #include "cambium/core/constants.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
@@ -70,7 +70,7 @@ template <class World>
 template <class World>
 [[nodiscard]] double distance_ahead(World const& world, Slot slot, geometry::OrientedBox const& other) {
   auto const& state = world.frame().agents[slot].state;
-  auto const along = geometry::sin_cos(state.heading);
+  auto const along = portable::sin_cos(state.heading);
   return (other.x - state.x) * along.cos + (other.y - state.y) * along.sin;
 }
 
@@ -244,7 +244,7 @@ struct AnyCollision {
       for (std::size_t j = i + 1; j < count; ++j) near += meet(i, j) ? 1 : 0;
       if (near == 0) continue;
       for (std::size_t k = has_directions ? count : 0; k < count; ++k) {
-        auto const direction = geometry::sin_cos_bounded(heading[k]);
+        auto const direction = portable::sin_cos_bounded(heading[k]);
         sin[k] = direction.sin;
         cos[k] = direction.cos;
       }

@@ -8,6 +8,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/state.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
@@ -63,7 +64,7 @@ struct Progress {
   template <class World>
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
     auto const& record = world.frame().agents[slot];
-    return record.state.speed * geometry::sin_cos(record.lane.heading_error).cos;
+    return record.state.speed * portable::sin_cos(record.lane.heading_error).cos;
   }
 };
 

@@ -7,7 +7,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
@@ -100,7 +100,7 @@ struct OffRoad {
     // It may be beyond the end of a lane beside.
     constexpr double inside = 0.01;  // [m]
     auto const at_end = corridor.center.pose(is_before ? inside : corridor.length() - inside);
-    auto const along = geometry::sin_cos(at_end.heading);
+    auto const along = portable::sin_cos(at_end.heading);
     return !map.on_drivable_lane({at_end.x - foot.lateral * along.sin, at_end.y + foot.lateral * along.cos});
   }
 };
@@ -109,9 +109,9 @@ namespace detail {
 
 /// Whether the middle of `box` is in a lane of the opposite direction, and in no lane of its own direction.
 [[nodiscard]] inline bool is_against_traffic(Map const& map, geometry::OrientedBox const& box) {
-  auto const hit = map.nearest_lane({box.x, box.y, std::atan2(box.sin, box.cos)}, 0.0);
+  auto const hit = map.nearest_lane({box.x, box.y, portable::atan2(box.sin, box.cos)}, 0.0);
   if (!hit) return false;
-  auto const along = geometry::sin_cos(map.lane(hit->lane).path.pose(hit->s).heading);
+  auto const along = portable::sin_cos(map.lane(hit->lane).path.pose(hit->s).heading);
   return along.cos * box.cos + along.sin * box.sin < 0.0;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/execution/lqr_gain.hpp"
 #include "cambium/execution/tracking.hpp"
 
@@ -61,8 +61,9 @@ struct LqrExecution {
     double const h = actuation.interval(std::max(1e-3, time - now.time));
     auto const across = lateral_gain(now.speed, wheel_base, h), along = longitudinal_gain(h);
     auto const law = [&](Reference const& reference, TrackingError const& error, S const&, double) -> Action {
-      return {reference.acceleration - along.first * error.along - along.second * error.speed,
-              std::atan(reference.curvature * wheel_base) - across.first * error.left - across.second * error.heading};
+      return {
+          reference.acceleration - along.first * error.along - along.second * error.speed,
+          portable::atan(reference.curvature * wheel_base) - across.first * error.left - across.second * error.heading};
     };
     return track(actuation, law, plan, now, dynamics, time, memory, random);
   }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <cmath>
-
+#include "cambium/core/portable_math.hpp"
 #include "cambium/execution/steering.hpp"
 #include "cambium/execution/tracking.hpp"
 
@@ -42,10 +41,10 @@ struct StanleyExecution {
     auto const law = [&](Reference const& reference, TrackingError const& error, S const& x, double h) -> Action {
       // The front axle's target is one wheel base straight ahead of the reference, beside a curved path. So a vehicle
       // whose rear axle follows the path has no error.
-      double const front = error.left + wheel_base * std::sin(error.heading);
+      double const front = error.left + wheel_base * portable::sin(error.heading);
       double const feedback = stanley_steering(-error.heading, front, x.speed, cross_track_gain, softening_speed);
       return {reference.acceleration - speed_gain * error.speed - lag_gain * error.along,
-              std::atan(reference.curvature * wheel_base) + feedback * held_feedback(x.speed * h, wheel_base)};
+              portable::atan(reference.curvature * wheel_base) + feedback * held_feedback(x.speed * h, wheel_base)};
     };
     return track(actuation, law, plan, now, dynamics, time, memory, random);
   }

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cmath>
-
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 
 namespace cambium {
 
@@ -13,7 +11,7 @@ namespace cambium {
 [[nodiscard]] inline double stanley_steering(double heading_error, double offset, double speed, double gain,
                                              double softening_speed) {
   double const pull = gain * offset, pace = speed + softening_speed;
-  return heading_error - (pace > 0.0 ? geometry::arc_tangent(pull / pace) : std::atan2(pull, pace));
+  return heading_error - (pace > 0.0 ? portable::atan(pull / pace) : portable::atan2(pull, pace));
 }
 
 /// Factor on a steering feedback that is held over a step, so that the heading error decays as much as under continuous

@@ -9,6 +9,7 @@
 #include "cambium/core/constants.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/integration.hpp"
 #include "cambium/execution/execution_model.hpp"
@@ -83,7 +84,7 @@ struct TrackingError {
 /// Where `x` is relative to the reference.
 template <MotionState S>
 [[nodiscard]] TrackingError tracking_error(Reference const& reference, S const& x) {
-  auto const [sin, cos] = geometry::sin_cos(reference.heading);
+  auto const [sin, cos] = portable::sin_cos(reference.heading);
   double const dx = x.x - reference.x, dy = x.y - reference.y;
   return {dx * cos + dy * sin, dy * cos - dx * sin, geometry::angle_difference(x.heading, reference.heading),
           x.speed - reference.speed};

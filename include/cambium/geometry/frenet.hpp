@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/state.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
@@ -24,7 +25,7 @@ template <MotionState S>
 [[nodiscard]] FrenetState to_frenet(Line const& line, S const& state, Projection const& projection) {
   auto cursor = projection.segment;
   double const error = angle_difference(state.heading, line.pose(projection.s, cursor).heading);
-  auto const [sin, cos] = sin_cos(error);
+  auto const [sin, cos] = portable::sin_cos(error);
   return {projection.s, projection.lateral, state.speed * cos, state.speed * sin, error};
 }
 
@@ -49,7 +50,7 @@ template <MotionState S>
                                        std::uint32_t& cursor) {
   Pose const pose = line.pose(frenet.s, cursor);
   auto const& segment = line.segments()[cursor];
-  auto const [sin, cos] = sin_cos(frenet.heading_error);
+  auto const [sin, cos] = portable::sin_cos(frenet.heading_error);
   return {time, pose.x - segment.uy * frenet.lateral, pose.y + segment.ux * frenet.lateral,
           normalize_angle(pose.heading + frenet.heading_error),
           frenet.longitudinal_speed * cos + frenet.lateral_speed * sin};
@@ -87,8 +88,8 @@ namespace detail {
 /// their heading errors, are subtracted from the distances between the reference points.
 [[nodiscard]] inline FrenetDifference frenet_difference(FrenetState const& first, Shape const& first_shape,
                                                         FrenetState const& second, Shape const& second_shape) {
-  auto const [sin_1, cos_1] = sin_cos(first.heading_error);
-  auto const [sin_2, cos_2] = sin_cos(second.heading_error);
+  auto const [sin_1, cos_1] = portable::sin_cos(first.heading_error);
+  auto const [sin_2, cos_2] = portable::sin_cos(second.heading_error);
   // (sin, -cos) turns the axis a quarter turn to the left: across the line.
   double const along = detail::gap_between(second.s - first.s, extent_along(first_shape, cos_1, sin_1),
                                            extent_along(second_shape, cos_2, sin_2));

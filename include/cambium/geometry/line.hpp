@@ -10,6 +10,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 
@@ -22,8 +23,9 @@ using LineSample = Pose;
 /// ahead: offset lines fold back like that beside a kink, and no vehicle gets past such a fold.
 [[nodiscard]] inline bool goes_on(LineSample const& last, LineSample const& next) {
   constexpr double fold = 1.0;  // [m]
-  double const dx = next.x - last.x, dy = next.y - last.y, distance = std::hypot(dx, dy);
-  return distance >= fold || (distance >= 1e-6 && dx * std::cos(last.heading) + dy * std::sin(last.heading) > 0.0);
+  double const dx = next.x - last.x, dy = next.y - last.y, distance = portable::hypot(dx, dy);
+  return distance >= fold ||
+         (distance >= 1e-6 && dx * portable::cos(last.heading) + dy * portable::sin(last.heading) > 0.0);
 }
 
 /// Position of a point relative to a `Line`.
@@ -219,7 +221,7 @@ class Line {
     if (!before && !beyond) return {g.s + along, across, i};
     // The foot point is an inner vertex, so the offset is the distance to it.
     double const excess = before ? along : along - g.length;
-    return {before ? g.s : g.s + g.length, std::copysign(std::hypot(across, excess), across), i};
+    return {before ? g.s : g.s + g.length, std::copysign(portable::hypot(across, excess), across), i};
   }
 
   /// The nearest local minimum of the distance to `p`, starting at segment `i`.
@@ -259,9 +261,9 @@ class Line {
       return true;
     }
     double const dx = x - end_x_, dy = y - end_y_;
-    double const distance = std::hypot(dx, dy);
+    double const distance = portable::hypot(dx, dy);
     if (distance < 1e-9) return false;
-    double heading = std::atan2(dy, dx);
+    double heading = portable::atan2(dy, dx);
     if (!segments_.empty())
       heading = segments_.back().heading + std::remainder(heading - segments_.back().heading, 2 * pi);
     segments_.push_back({length_, end_x_, end_y_, dx / distance, dy / distance, distance, heading, 0.0});

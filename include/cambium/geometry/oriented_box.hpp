@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/state.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
@@ -54,7 +54,7 @@ struct OrientedBox {
 
 /// The rectangle of `shape` with its reference point at `pose`.
 [[nodiscard]] inline OrientedBox box_of(Shape const& shape, Pose const& pose) {
-  auto const [sin, cos] = sin_cos(pose.heading);
+  auto const [sin, cos] = portable::sin_cos(pose.heading);
   return box_of(shape, pose.x, pose.y, cos, sin);
 }
 

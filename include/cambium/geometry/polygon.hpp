@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -37,7 +37,7 @@ namespace cambium::geometry {
   double const px = p.x() - a.x(), py = p.y() - a.y();
   double const squared = ex * ex + ey * ey;
   double const t = squared > 0.0 ? std::clamp((px * ex + py * ey) / squared, 0.0, 1.0) : 0.0;
-  return std::hypot(px - t * ex, py - t * ey);
+  return portable::hypot(px - t * ex, py - t * ey);
 }
 
 /// An immutable simple polygon in the map frame [m]: a closed ring of corners, counter-clockwise, not necessarily
@@ -119,7 +119,7 @@ class Polygon {
   /// This polygon, taken as local to `frame` (x forward, y left), in the map frame. O(n).
   [[nodiscard]] Polygon transformed(Pose const& frame) const {
     if (points_.empty()) return {};
-    auto const [sin, cos] = sin_cos(frame.heading);
+    auto const [sin, cos] = portable::sin_cos(frame.heading);
     Polygon result = *this;
     for (auto& p : result.points_) {
       p = Point{frame.x + cos * p.x() - sin * p.y(), frame.y + sin * p.x() + cos * p.y()};

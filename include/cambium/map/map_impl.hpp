@@ -1,8 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/corridor/detail/built_corridors.hpp"
 #include "cambium/map/corridor/detail/corridor_signals.hpp"
@@ -28,7 +28,7 @@ namespace detail {
     for (auto const& signal : corridor_signals(map, corridor)) {
       auto const at = corridor.center.pose(signal.line);
       auto const widths = corridor.widths_at(signal.line);
-      geometry::Point const aside(-std::sin(at.heading), std::cos(at.heading));
+      geometry::Point const aside(-portable::sin(at.heading), portable::cos(at.heading));
       StopLine const line{at.position() + widths.left * aside, at.position() - widths.right * aside, signal.light};
       bool const is_known = std::any_of(lines.begin(), lines.end(), [&line](StopLine const& known) {
         return known.light == line.light && (known.left - line.left).norm() + (known.right - line.right).norm() < 0.2;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,6 +9,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
@@ -35,7 +35,7 @@ struct ViewInterval {
                                               geometry::Point const& axis) {
   // Angles relative to the first corner differ by at most half a turn.
   auto const direction = [&](geometry::Point const& p, geometry::Point const& from) {
-    return std::atan2(from.x() * p.y() - from.y() * p.x(), from.x() * p.x() + from.y() * p.y());
+    return portable::atan2(from.x() * p.y() - from.y() * p.x(), from.x() * p.x() + from.y() * p.y());
   };
   geometry::Point const first = corners[0] - eye;
   double const base = direction(first, axis);
@@ -69,7 +69,7 @@ class Sight {
   Sight(geometry::Point const& eye, geometry::OrientedBox const& target)
       : eye_(eye),
         center_(target.center()),
-        radius_(std::hypot(target.half_length, target.half_width)),
+        radius_(portable::hypot(target.half_length, target.half_width)),
         corners_(target.corners()) {
     look();
   }
@@ -79,7 +79,7 @@ class Sight {
   }
 
   /// The reference direction of all angles [rad], map frame.
-  [[nodiscard]] double axis() const { return std::atan2(axis_.y(), axis_.x()); }
+  [[nodiscard]] double axis() const { return portable::atan2(axis_.y(), axis_.x()); }
 
   /// Calls `f(ViewInterval)` for each visible part of the target until `f` returns true; returns whether it did.
   /// `each_cover(g)` calls `g(ViewInterval)` for each body in front.
@@ -123,7 +123,7 @@ class Sight {
       double const from = std::max(body.from + turn, seen_.from), to = std::min(body.to + turn, seen_.to);
       if (!(from < to)) continue;
       // Of two disjoint convex bodies, the same one is in front in all directions that they share.
-      auto const [sin, cos] = geometry::sin_cos(0.5 * (from + to));
+      auto const [sin, cos] = portable::sin_cos(0.5 * (from + to));
       geometry::Point const ray{axis_.x() * cos - axis_.y() * sin, axis_.x() * sin + axis_.y() * cos};
       if (distance_along(corners, eye_, ray) < distance_along(corners_of_target(), eye_, ray)) return body;
     }
@@ -134,7 +134,7 @@ class Sight {
   [[nodiscard]] ViewInterval outside(double heading, double field_of_view) const {
     double const half = geometry::pi - 0.5 * field_of_view;
     if (!(half > 0.0)) return {};
-    double const back = geometry::normalize_angle(heading + geometry::pi - std::atan2(axis_.y(), axis_.x()));
+    double const back = geometry::normalize_angle(heading + geometry::pi - portable::atan2(axis_.y(), axis_.x()));
     return {back - half, back + half};
   }
 
@@ -269,7 +269,7 @@ struct OccludedObserver {
       auto const box = geometry::box_of(scene.shape(i), scene.state(i));
       if (box.contains(eye)) continue;
       auto const corners = box.corners();
-      auto const hidden = sight.cover_of(corners, box.center(), std::hypot(box.half_length, box.half_width));
+      auto const hidden = sight.cover_of(corners, box.center(), portable::hypot(box.half_length, box.half_width));
       if (!hidden.empty()) cover(hidden);
     }
   }

@@ -10,6 +10,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/observer/observer_model.hpp"
 
@@ -140,7 +141,7 @@ struct ParametricObserver {
   template <MotionState S>
   [[nodiscard]] S observe(S const& truth, bool is_own, RandomStream const& random) const {
     auto const [along, across, heading, speed] = (is_own ? own : others).error(numbers(random));
-    auto const [sin, cos] = geometry::sin_cos(truth.heading);
+    auto const [sin, cos] = portable::sin_cos(truth.heading);
     S seen = truth;
     seen.x += along * cos - across * sin;
     seen.y += along * sin + across * cos;
@@ -163,7 +164,7 @@ struct ParametricObserver {
     auto const period = static_cast<std::uint32_t>(std::max(lasting, 1));
     auto const passed = random.step() % period, begin = random.step() - passed;
     if (passed == 0) return draw(random);
-    auto const [sin, cos] = geometry::sin_cos(0.5 * geometry::pi * passed / period);
+    auto const [sin, cos] = portable::sin_cos(0.5 * geometry::pi * passed / period);
     Vector z = draw(random.at_step(begin));
     Vector const next = draw(random.at_step(begin + period));
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = z[i] * cos + next[i] * sin;

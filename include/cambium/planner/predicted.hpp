@@ -13,6 +13,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/plan.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/course_end.hpp"
 #include "cambium/evaluation/terms.hpp"
@@ -204,7 +205,7 @@ void go_straight_on(View const& view, double end, Plan<View>& plan) {
   auto state = plan.trajectory.empty() ? view.state() : plan.trajectory.back();
   double const left = end - state.time;
   if (!plan.trajectory.empty() && left <= same_time) return;
-  auto const along = geometry::sin_cos(state.heading);
+  auto const along = portable::sin_cos(state.heading);
   state.x += along.cos * state.speed * left;
   state.y += along.sin * state.speed * left;
   state.time = end;
@@ -227,7 +228,7 @@ template <class World>
 [[nodiscard]] std::vector<Slot> nearest_agents(World const& world, Slot ego, std::size_t count, double range) {
   auto const& agents = world.frame().agents;
   auto const distance = [&](Slot slot) {
-    return std::hypot(agents[slot].state.x - agents[ego].state.x, agents[slot].state.y - agents[ego].state.y);
+    return portable::hypot(agents[slot].state.x - agents[ego].state.x, agents[slot].state.y - agents[ego].state.y);
   };
   std::vector<Slot> slots;
   for (Slot slot{}; index_of(slot) < world.size(); ++slot)

@@ -15,6 +15,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
 
@@ -60,7 +61,7 @@ CAMBIUM_COLD void try_to_add(JunctionSite const& site, JunctionTraffic const& tr
   double const s = 4.0 + uniform01(random) * (last - 4.0);
   auto const pose = map.lane(from).path.pose(s);
   for (auto const& agent : world.frame().agents)
-    if (std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
+    if (portable::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
   auto const shape = random_shape(map, traffic.mix, route, random);
   bool const cycles = shape == geometry::bicycle();
   std::optional<AgentId> id;

@@ -15,6 +15,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/off_road.hpp"
@@ -90,7 +91,7 @@ CAMBIUM_COLD std::size_t count_crossings(Map const& map, std::vector<MergingSite
   auto const is_crossing = [&](LaneId id, map::Overlap const& overlap) {
     if (overlap.kind != map::OverlapKind::merge) return overlap.kind == map::OverlapKind::crossing;
     double const turn = heading_at(id, overlap.begin) - heading_at(overlap.other, overlap.other_begin);
-    return std::cos(turn) < std::cos(geometry::pi / 6);
+    return portable::cos(turn) < portable::cos(geometry::pi / 6);
   };
   std::size_t count = 0;
   for (auto const id : used)

@@ -17,9 +17,9 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -221,7 +221,7 @@ class TrafficInflow {
       queue.waiting = 1;
       return;
     }
-    auto const headway = [&] { return -3600.0 / queue.per_hour * detail::portable_log(1.0 - uniform01(queue.random)); };
+    auto const headway = [&] { return -3600.0 / queue.per_hour * portable::log(1.0 - uniform01(queue.random)); };
     if (queue.arrival < 0.0) queue.arrival = time + headway();
     for (; queue.arrival <= time; queue.arrival += headway()) ++queue.waiting;
   }
@@ -250,7 +250,7 @@ class TrafficInflow {
   [[nodiscard]] bool is_occupied(WorldType const& world, geometry::Pose const& pose,
                                  geometry::Shape const& shape) const {
     constexpr double near = 10.0, lane_width = 5.0;  // [m]
-    auto const along = geometry::sin_cos(pose.heading);
+    auto const along = portable::sin_cos(pose.heading);
     double const half = 0.5 * rules_.minimum_gap;
     auto box = geometry::box_of(shape, pose);
     box.x += half * along.cos;
@@ -266,7 +266,7 @@ class TrafficInflow {
       if (geometry::intersects(box, box_at(world, slot))) return true;
       auto const& agent = world.frame().agents[slot];
       double const aside = y * along.cos - x * along.sin;
-      if (std::abs(aside) < lane_width && std::cos(agent.state.heading - pose.heading) > 0.0 &&
+      if (std::abs(aside) < lane_width && portable::cos(agent.state.heading - pose.heading) > 0.0 &&
           agent.lane.heading_error * aside < -0.02 * std::abs(aside))
         return true;
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <variant>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/detail/look_around.hpp"
@@ -434,7 +434,7 @@ class ObservedWorld {
     auto const& truth = record(slot).state;
     auto const& seen = observed(slot);
     double const along = truth.heading - record(slot).lane.heading_error;
-    return (seen.x - truth.x) * std::cos(along) + (seen.y - truth.y) * std::sin(along);
+    return (seen.x - truth.x) * portable::cos(along) + (seen.y - truth.y) * portable::sin(along);
   }
 
   [[nodiscard]] static geometry::Pose pose_of(State const& s) { return {s.x, s.y, s.heading}; }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 
 namespace cambium {
 
@@ -267,7 +267,7 @@ struct ChangeLanes {
     auto segment = option.place.segment;
     double const along =
         view.road().corridors[option.place.corridor].center.pose(option.place.s + distance, segment).heading;
-    double const leftwards = state.speed * std::sin(state.heading - along);
+    double const leftwards = state.speed * portable::sin(state.heading - along);
     return (option.left ? -leftwards : leftwards) > detail::least_drift;
   }
 

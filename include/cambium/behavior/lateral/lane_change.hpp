@@ -8,7 +8,7 @@
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/shape.hpp"
 
 namespace cambium {
@@ -157,8 +157,8 @@ struct LaneChangeCourse {
     constexpr double steepest = 1.875;  // slope halfway, relative to the mean slope of the course
     auto const& at = view.place();
     double const speed = std::max(0.0, view.state().speed), aslant = std::abs(at.heading_error);
-    if (speed * std::sin(aslant) < detail::least_drift || aslant > detail::most_aslant) return {};
-    double const slope = std::tan(at.heading_error);
+    if (speed * portable::sin(aslant) < detail::least_drift || aslant > detail::most_aslant) return {};
+    double const slope = portable::tan(at.heading_error);
     auto const drift = detail::drift_of(view, slope);
     if (drift.target == at.corridor && drift.rest != 0.0) return {};
     // The lateral speed falls by at most 2 m/s^2 on average.
@@ -193,14 +193,14 @@ template <class View>
                                      LaneChange& change, LongitudinalMotion<double> const& motion, double dt,
                                      double offset = 0.0) {
   double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
-  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  auto const [sin, cos] = portable::sin_cos(at.heading_error);
   LateralCourse<double> const start{at.lateral - offset, stretch * (sin / cos), change.bend};
   double const along = motion.distance * cos / stretch;
   auto const course = converge(start, static_cast<double>(change.left), along);
   typename View::State next = view.state();
   next.time = view.time() + dt;
-  place_on_lane(corridor, at.s + along, offset + course.offset, geometry::arc_tangent(course.slope / stretch),
-                at.segment, next);
+  place_on_lane(corridor, at.s + along, offset + course.offset, portable::atan(course.slope / stretch), at.segment,
+                next);
   next.speed = motion.speed;
   change.left -= static_cast<float>(along);
   change.bend = static_cast<float>(course.bend);
@@ -257,7 +257,7 @@ template <class View>
   map::LanePlace const at = view.place(change.target);
   auto const& corridor = view.road().corridors[change.target];
   auto const sides = corridor.widths_at(at.s, at.segment);
-  LateralCourse<double> const start{at.lateral, std::tan(std::clamp(at.heading_error, -1.0, 1.0)), change.bend};
+  LateralCourse<double> const start{at.lateral, portable::tan(std::clamp(at.heading_error, -1.0, 1.0)), change.bend};
   constexpr int samples = 8;
   for (int i = 0; i < samples; ++i) {
     double const length = change.left;

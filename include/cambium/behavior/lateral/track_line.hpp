@@ -7,6 +7,7 @@
 
 #include "cambium/behavior/lateral/keep_lane.hpp"
 #include "cambium/core/described.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/dynamics/integration.hpp"
 #include "cambium/execution/steering.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -25,7 +26,7 @@ struct FrontAxle {
 template <MotionState State>
 [[nodiscard]] FrontAxle front_axle(geometry::Line const& line, State const& state, double wheel_base,
                                    std::uint32_t& hint) {
-  auto const [sin, cos] = geometry::sin_cos(state.heading);
+  auto const [sin, cos] = portable::sin_cos(state.heading);
   auto const foot = line.project({state.x + wheel_base * cos, state.y + wheel_base * sin}, hint);
   hint = foot.segment;
   auto const& segment = line.segments()[foot.segment];

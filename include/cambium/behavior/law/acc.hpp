@@ -6,6 +6,7 @@
 #include "cambium/behavior/law/follow_motion.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/core/described.hpp"
+#include "cambium/core/portable_math.hpp"
 
 namespace cambium {
 
@@ -27,7 +28,7 @@ namespace cambium {
 [[nodiscard]] inline double acc_blend(double idm, double cah, double comfortable_deceleration, double coolness) {
   if (idm >= cah) return idm;
   double const b = comfortable_deceleration;
-  return (1.0 - coolness) * idm + coolness * (cah + b * std::tanh((idm - cah) / b));
+  return (1.0 - coolness) * idm + coolness * (cah + b * portable::tanh((idm - cah) / b));
 }
 
 /// A driver's car following at one speed [m/s] by the ACC model (Kesting, Treiber, Helbing 2010, "Enhanced intelligent

@@ -6,7 +6,7 @@
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 
 namespace cambium {
 
@@ -117,7 +117,7 @@ CAMBIUM_NOINLINE [[nodiscard]] typename View::State drift_on(View const& view, L
   auto const& corridor = view.corridor();
   double const speed = std::max(view.state().speed, motion.speed);
   double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
-  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  auto const [sin, cos] = portable::sin_cos(at.heading_error);
   double const along = motion.distance * cos / stretch, slope = stretch * (sin / cos);
   bool const turns_at_once =
       std::abs(slope) <= std::max(levelling_curvature(speed, comfortable_levelling) * along, aligned);
@@ -130,7 +130,7 @@ CAMBIUM_NOINLINE [[nodiscard]] typename View::State drift_on(View const& view, L
   double const curvature = slope * slope < 2.0 * way * hardest ? slope * slope / (2.0 * way) : hardest;
   double const turning = std::min(along, std::abs(slope) / curvature);
   place_on_lane(corridor, at.s + along, at.lateral + turning * (slope - side * curvature * turning / 2.0),
-                geometry::arc_tangent((slope - side * curvature * turning) / stretch), at.segment, next);
+                portable::atan((slope - side * curvature * turning) / stretch), at.segment, next);
   return next;
 }
 

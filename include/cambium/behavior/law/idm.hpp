@@ -11,6 +11,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 
 namespace cambium {
 
@@ -75,12 +76,13 @@ struct Idm {
 };
 static_assert(HasIdmParameters<Idm>);
 
-/// x to the power of `exponent`, without `pow` for IDM's usual 4.
+/// x to the power of `exponent`, without `pow` for IDM's usual 4; 0 for x < 0.
 template <class Scalar>
 [[nodiscard]] Scalar idm_power(Scalar x, double exponent) {
   if (exponent == 4.0) return (x * x) * (x * x);
-  using std::pow;
-  return pow(x, Scalar(exponent));
+  if (!(x > Scalar(0))) return Scalar(0);
+  using portable::pow;
+  return Scalar(pow(x, Scalar(exponent)));
 }
 
 /// IDM's formula (Treiber, Hennecke, Helbing 2000, eq. 3 and 4) with all terms that depend on the parameters alone:

@@ -8,6 +8,7 @@
 #include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/frenet.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -27,7 +28,7 @@ template <MotionState S>
 [[nodiscard]] LaneReach lane_reach(geometry::Line const& line, S const& state, geometry::Shape const& shape,
                                    std::uint32_t hint) {
   auto const at = geometry::to_frenet(line, state, hint);
-  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  auto const [sin, cos] = portable::sin_cos(at.heading_error);
   auto const along = geometry::extent_along(shape, cos, sin), across = geometry::extent_along(shape, sin, -cos);
   return {at.s - along.negative, at.s + along.positive, at.lateral - across.negative, at.lateral + across.positive};
 }

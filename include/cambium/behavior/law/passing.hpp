@@ -5,9 +5,10 @@
 #include <limits>
 #include <optional>
 
-#include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/frenet.hpp"
 
 namespace cambium {
@@ -16,7 +17,7 @@ namespace cambium {
 /// with `length` l [m]. The course depends on the place alone, so a vehicle that restarts it in each step stays on it.
 template <class Scalar>
 [[nodiscard]] LateralCourse<Scalar> approach(LateralCourse<Scalar> const& start, Scalar length, Scalar way) {
-  using std::exp;
+  using portable::exp;
   Scalar const rate = start.slope + start.offset / length, decay = exp(-way / length);
   Scalar const offset = (start.offset + rate * way) * decay, slope = (start.slope - rate * way / length) * decay;
   return {offset, slope, -(Scalar(2) * slope + offset / length) / length};
@@ -39,12 +40,12 @@ template <class View>
   if (std::abs(at.heading_error) > most_aslant) return next;
   auto const& corridor = view.corridor();
   double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
-  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  auto const [sin, cos] = portable::sin_cos(at.heading_error);
   double const along = motion.distance * cos / stretch;
   auto const course = approach(LateralCourse<double>{at.lateral - offset, stretch * (sin / cos), 0.0},
                                approach_length(view.shape(), motion.speed), along);
-  place_on_lane(corridor, at.s + along, offset + course.offset, geometry::arc_tangent(course.slope / stretch),
-                at.segment, next);
+  place_on_lane(corridor, at.s + along, offset + course.offset, portable::atan(course.slope / stretch), at.segment,
+                next);
   return next;
 }
 
@@ -143,7 +144,7 @@ template <class View>
   double const fast = speed + faster, closing = fast - other.speed;
   if (side * at.lateral >= offset.least) return true;
   if (other.gap <= 0.0 || closing <= 0.0 || std::abs(at.heading_error) > most_aslant) return false;
-  LateralCourse<double> const now{at.lateral - side * offset.aim, std::tan(at.heading_error), 0.0};
+  LateralCourse<double> const now{at.lateral - side * offset.aim, portable::tan(at.heading_error), 0.0};
   double const way = fast * other.gap / closing;
   return side * approach(now, approach_length(view.shape(), fast), way).offset + offset.aim >= offset.least;
 }

@@ -12,6 +12,7 @@
 #include "cambium/behavior/pedestrian/crossing.hpp"
 #include "cambium/behavior/pedestrian/social_force.hpp"
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/polygon.hpp"
@@ -92,7 +93,7 @@ struct Pedestrian {
     auto const& start = view.state();
     detail::Surroundings around;
     gather(view, around);
-    around.sight_cosine = std::cos(0.5 * social.sight_angle);
+    around.sight_cosine = portable::cos(0.5 * social.sight_angle);
     Walk walk{{start.x, start.y}, velocity_of(start), view.place()};
     double const stop = detail::distance_to_stop(crossing, social, view, start.speed) + walk.at.s;
     double const substeps = std::clamp(std::ceil(dt / longest_substep), 1.0, 400.0), h = dt / substeps;
@@ -111,7 +112,7 @@ struct Pedestrian {
 
   template <MotionState State>
   [[nodiscard]] static Vector velocity_of(State const& state) {
-    auto const [sin, cos] = geometry::sin_cos(state.heading);
+    auto const [sin, cos] = portable::sin_cos(state.heading);
     return {state.speed * cos, state.speed * sin};
   }
 
@@ -230,7 +231,7 @@ struct Pedestrian {
     next.y = walk.position.y;
     next.speed = walk.velocity.norm();
     if (next.speed > turning)
-      next.heading += geometry::angle_difference(std::atan2(walk.velocity.y, walk.velocity.x), next.heading);
+      next.heading += geometry::angle_difference(portable::atan2(walk.velocity.y, walk.velocity.x), next.heading);
     return detail::plan_to(view, next, dt);
   }
 };

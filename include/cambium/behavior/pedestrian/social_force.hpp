@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 
 namespace cambium {
@@ -91,7 +92,7 @@ struct SocialForceParameters {
 template <class Scalar>
 [[nodiscard]] PlaneVector<Scalar> social_repulsion(SocialForceParameters const& p, PlaneVector<Scalar> const& apart,
                                                    PlaneVector<Scalar> const& stride) {
-  using std::exp;
+  using portable::exp;
   using std::sqrt;
   auto const later = apart - stride;
   Scalar const now = apart.norm(), then = later.norm(), sum = now + then;
@@ -106,7 +107,7 @@ template <class Scalar>
 /// Size [m/s^2] of the repulsion by a border at `distance` [m] (eq. 5): U0 / R exp(-distance / R); constant behind it.
 template <class Scalar>
 [[nodiscard]] Scalar border_repulsion(SocialForceParameters const& p, Scalar const& distance) {
-  using std::exp;
+  using portable::exp;
   using std::max;
   return Scalar(p.border_repulsion / p.border_range) * exp(Scalar(-1.0 / p.border_range) * max(Scalar(0.0), distance));
 }
@@ -115,7 +116,7 @@ template <class Scalar>
 /// constant where they overlap, 0 beyond 20 times the range.
 template <class Scalar>
 [[nodiscard]] Scalar contact_repulsion(SocialForceParameters const& p, Scalar const& distance) {
-  using std::exp;
+  using portable::exp;
   using std::max;
   if (distance > Scalar(20.0 * p.contact_range)) return Scalar(0.0);  // 2e-9 of it
   return Scalar(p.contact_acceleration) * exp(Scalar(-1.0 / p.contact_range) * max(Scalar(0.0), distance));
@@ -136,7 +137,7 @@ template <class Scalar>
                                                          PlaneVector<double> const& velocity,
                                                          PlaneVector<double> const& desired,
                                                          PlaneVector<double> const& force, double h) {
-  double const stays = std::exp(-h / p.relaxation_time);
+  double const stays = portable::exp(-h / p.relaxation_time);
   auto const goal = desired + p.relaxation_time * force;
   auto const next = goal + stays * (velocity - goal);
   double const speed = next.norm(), highest = p.highest_speed_ratio * p.desired_speed;

@@ -9,11 +9,12 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/course.hpp"
-#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/wrap/human_view.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/execution/interpolate.hpp"
 
@@ -156,13 +157,13 @@ struct HumanDriver {
     memory.has_begun = true;
     if (gap_error == 0.0 && rate_error == 0.0 && looks_away == 0.0) return {};
     auto random = view.random(purpose);
-    double const kept = is_new ? 0.0 : std::exp(-dt / persistence), fresh = std::sqrt(1.0 - kept * kept);
+    double const kept = is_new ? 0.0 : portable::exp(-dt / persistence), fresh = std::sqrt(1.0 - kept * kept);
     for (auto* const error : {&memory.gap_error, &memory.rate_error})
       *error = static_cast<float>(kept * static_cast<double>(*error) + fresh * Normal{}(random));
     double const mean = memory.looks_away ? looks_away : attentive;
-    bool const turns = looks_away > 0.0 && !is_new && uniform01(random) < 1.0 - std::exp(-dt / mean);
+    bool const turns = looks_away > 0.0 && !is_new && uniform01(random) < 1.0 - portable::exp(-dt / mean);
     memory.looks_away = memory.looks_away != turns;
-    return {.gap_factor = std::exp(gap_error * static_cast<double>(memory.gap_error)),
+    return {.gap_factor = portable::exp(gap_error * static_cast<double>(memory.gap_error)),
             .rate_error = rate_error * static_cast<double>(memory.rate_error)};
   }
 

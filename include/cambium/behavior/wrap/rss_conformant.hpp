@@ -7,12 +7,12 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/course.hpp"
-#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/wrap/rss.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
 
 namespace cambium {
@@ -177,7 +177,7 @@ struct RssConformant {
   template <MotionState S>
   [[nodiscard]] static Reach reach_of(S const& now, S const& end, double distance) {
     constexpr double share = 0.05, apart = 0.1;  // [-], [m]
-    auto const ahead = geometry::sin_cos(now.heading);
+    auto const ahead = portable::sin_cos(now.heading);
     if ((end.x - now.x) * ahead.cos + (end.y - now.y) * ahead.sin < -apart) return Reach::behind;
     return detail::way_between(now, end) <= (1.0 + share) * distance + apart ? Reach::within : Reach::beyond;
   }
@@ -225,7 +225,7 @@ struct RssConformant {
     if (apart <= same * same) return true;
     double const opposite = (fast > step.speed ? rss_opposite_direction(p, fast, fast) : step.opposite) + sizes;
     return apart <= opposite * opposite &&
-           !(state.speed >= 0.0 && geometry::sin_cos(state.heading - own.heading).cos > 0.2);
+           !(state.speed >= 0.0 && portable::sin_cos(state.heading - own.heading).cos > 0.2);
   }
   /// At least the radius of a shape [m], without a root.
   [[nodiscard]] static double half_girth(geometry::Shape const& shape) {
@@ -266,7 +266,7 @@ struct RssConformant {
     auto const& segment = center.segments()[foot.segment];
     double const inside = std::clamp(foot.s - segment.s, 0.0, segment.length);
     auto const [sin, cos] =
-        geometry::sin_cos_often_slight(state.heading - (segment.heading + segment.curvature * inside));
+        portable::sin_cos_often_slight(state.heading - (segment.heading + segment.curvature * inside));
     auto const lengthwise = geometry::extent_along(shape, cos, sin),
                sideways = geometry::extent_along(shape, sin, -cos);
     return {foot.s,

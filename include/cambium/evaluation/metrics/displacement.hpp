@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -9,6 +8,7 @@
 
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/state.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -29,7 +29,7 @@ struct Displacement {
     if (record.status != AgentStatus::driving || !recorded.states || recorded.states->empty()) return;
     if (world.time() < recorded.states->front().time || world.time() > recorded.states->back().time) return;
     auto const was = recorded.at(world.time());
-    last_ = std::hypot(record.state.x - was.x, record.state.y - was.y);
+    last_ = portable::hypot(record.state.x - was.x, record.state.y - was.y);
     sum_ += last_;
     most_ = std::max(most_, last_);
     ++frames_;

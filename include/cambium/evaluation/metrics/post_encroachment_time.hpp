@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
@@ -69,7 +70,7 @@ class PostEncroachmentTime {
   void meet(Footprint const& now, Earlier const& earlier) {
     for (auto const& before : earlier) {
       double const since = now.time - before.time;
-      if (since >= least_ || std::cos(now.heading - before.heading) > std::cos(crossing_angle)) continue;
+      if (since >= least_ || portable::cos(now.heading - before.heading) > portable::cos(crossing_angle)) continue;
       if (geometry::intersects(now.box, before.box)) least_ = since;
     }
   }

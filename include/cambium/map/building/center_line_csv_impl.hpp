@@ -9,6 +9,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/building/center_line_csv.hpp"
@@ -111,8 +112,8 @@ class CenterLineReader {
     if (!result_.points.empty() && (point - result_.points.back()).norm() <= 1e-3) return;  // a joint written twice
     if (result_.points.size() > 1) {
       auto const &last = result_.points.back(), &before = result_.points[result_.points.size() - 2];
-      double const from = std::atan2(last.y() - before.y(), last.x() - before.x());
-      double const to = std::atan2(point.y() - last.y(), point.x() - last.x());
+      double const from = portable::atan2(last.y() - before.y(), last.x() - before.x());
+      double const to = portable::atan2(point.y() - last.y(), point.x() - last.x());
       if (std::abs(geometry::angle_difference(to, from)) > 0.75 * geometry::pi)
         fail("the line turns back on itself here", "give the points in the order in which they are passed");
     }
@@ -122,12 +123,12 @@ class CenterLineReader {
     result_.points.push_back(point);
     if (column_[heading]) result_.headings.push_back(row[heading]);
     if (has_borders())
-      result_.widths.push_back({std::hypot(row[left_x] - row[x], row[left_y] - row[y]),
-                                std::hypot(row[right_x] - row[x], row[right_y] - row[y])});
+      result_.widths.push_back({portable::hypot(row[left_x] - row[x], row[left_y] - row[y]),
+                                portable::hypot(row[right_x] - row[x], row[right_y] - row[y])});
   }
 
   void check_heading(double theta, geometry::Point const& way) const {
-    double const off = geometry::angle_difference(theta, std::atan2(way.y(), way.x()));
+    double const off = geometry::angle_difference(theta, portable::atan2(way.y(), way.x()));
     // Later ones may count laps; a first one beyond a turn is in degrees.
     if (std::abs(off) > 0.5 * geometry::pi || std::abs(result_.headings.front()) > 2.0 * geometry::pi)
       fail("the heading " + cambium::detail::rounded_text(theta) +

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "cambium/core/described.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -79,7 +80,7 @@ namespace detail {
     if (!heading) at.heading_error = 0.0;
     auto const sides = corridor.widths_at(at.s, at.segment);
     double const aside = std::max({at.lateral - sides.left, -sides.right - at.lateral, 0.0});
-    double const outside = std::hypot(aside, std::max({-at.s, at.s - corridor.length(), 0.0}));
+    double const outside = portable::hypot(aside, std::max({-at.s, at.s - corridor.length(), 0.0}));
     double const turn = outside > 0.0 ? 0.0 : std::floor(std::abs(at.heading_error) / 0.05);
     auto const rank = std::tuple(outside, turn, std::abs(at.lateral));
     if (best.corridor != none<CorridorId> && !(rank < best_rank)) continue;

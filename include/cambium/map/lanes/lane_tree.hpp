@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -77,12 +78,12 @@ class LaneTree {
   /// within `radius` [m] whose direction is less than a quarter turn off. Nothing if there is none. O(log n), no
   /// allocation.
   [[nodiscard]] std::optional<LaneHit> nearest_drivable(geometry::Pose const& pose, double radius) const {
-    double const c = std::cos(pose.heading), s = std::sin(pose.heading);
+    double const c = portable::cos(pose.heading), s = portable::sin(pose.heading);
     if (!std::isfinite(c)) return std::nullopt;  // a heading that is none fits no lane
     Best holding, nearest;
     drivable_.visit(pose.position(), 0.0, [&](LaneHit const& hit, geometry::Point const& d) {
       if (hit.distance > 0.0) return false;
-      double const error = std::abs(std::atan2(d.x() * s - d.y() * c, d.x() * c + d.y() * s));
+      double const error = std::abs(portable::atan2(d.x() * s - d.y() * c, d.x() * c + d.y() * s));
       holding.offer(std::floor(error / 0.05), hit);
       return false;
     });
@@ -116,8 +117,8 @@ class LaneTree {
   /// What `near` finds for a radius of `reach`, of any number.
   [[nodiscard]] std::vector<LaneHit> within(geometry::Point const& p, double reach, LaneQuery const& query) const {
     std::vector<LaneHit> hits;
-    geometry::Point const ahead{std::cos(query.heading.value_or(0.0)), std::sin(query.heading.value_or(0.0))};
-    double const least = query.heading ? std::cos(std::min(query.heading_tolerance, geometry::pi)) : -2.0;
+    geometry::Point const ahead{portable::cos(query.heading.value_or(0.0)), portable::sin(query.heading.value_or(0.0))};
+    double const least = query.heading ? portable::cos(std::min(query.heading_tolerance, geometry::pi)) : -2.0;
     auto const collect = [&](LaneHit const& hit, geometry::Point const& d) {
       if (hit.distance <= reach && d.dot(ahead) >= least) hits.push_back(hit);
       return false;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/map/opendrive/element.hpp"
 #include "cambium/map/opendrive/lanes.hpp"
 #include "cambium/map/opendrive/signals.hpp"
@@ -204,8 +204,8 @@ struct Document {
 [[nodiscard]] inline Geometry with_offset(Geometry g, HeaderOffset const& offset) {
   double const x = g.x + offset.x;
   double const y = g.y + offset.y;
-  double const c = std::cos(offset.heading);
-  double const s = std::sin(offset.heading);
+  double const c = portable::cos(offset.heading);
+  double const s = portable::sin(offset.heading);
   g.x = offset.heading == 0.0 ? x : c * x - s * y;
   g.y = offset.heading == 0.0 ? y : s * x + c * y;
   g.heading += offset.heading;

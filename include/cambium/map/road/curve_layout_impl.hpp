@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/map/road/parametric_cubic.hpp"
@@ -49,7 +50,7 @@ inline void check_piece(CurvePiece const& piece) {
 
 /// Whether the way from one pose to the other turns by less than a millionth at either end.
 [[nodiscard]] inline bool is_straight(geometry::Pose const& from, geometry::Pose const& to) {
-  double const direction = std::atan2(to.y - from.y, to.x - from.x);
+  double const direction = portable::atan2(to.y - from.y, to.x - from.x);
   auto const turns = [&](double heading) { return std::abs(geometry::angle_difference(heading, direction)) > 1e-6; };
   return !turns(from.heading) && !turns(to.heading);
 }
@@ -59,8 +60,8 @@ inline void check_piece(CurvePiece const& piece) {
   double const dx = to.x - from.x, dy = to.y - from.y;
   return {.x = round_length(from.x),
           .y = round_length(from.y),
-          .heading = round_angle(std::atan2(dy, dx)),
-          .length = round_length(std::hypot(dx, dy))};
+          .heading = round_angle(portable::atan2(dy, dx)),
+          .length = round_length(portable::hypot(dx, dy))};
 }
 
 /// The cubic from one pose to another that leaves and arrives along tangents of these lengths (a Bezier curve's).
@@ -77,8 +78,8 @@ inline void check_piece(CurvePiece const& piece) {
     return ParametricCubic::Coefficients{0.0, round_length(b), round_length(3 * end_value - 2 * b - end_slope),
                                          round_length(b + end_slope - 2 * end_value)};
   };
-  auto const u = coefficients(3 * leaving, end.x(), 3 * arriving * std::cos(turn));
-  auto const v = coefficients(0.0, end.y(), 3 * arriving * std::sin(turn));
+  auto const u = coefficients(3 * leaving, end.x(), 3 * arriving * portable::cos(turn));
+  auto const v = coefficients(0.0, end.y(), 3 * arriving * portable::sin(turn));
   g.cubic = std::make_shared<ParametricCubic const>(u, v, 1.0);
   if (!g.cubic->is_regular())
     throw MapError(where, "there is no smooth curve from one pose to the next", "move them apart, or turn them");
@@ -89,16 +90,18 @@ inline void check_piece(CurvePiece const& piece) {
 /// As `make_cubic`, with tangents that come near a circle's and keep the curvature low (Hobby 1986, velocity function).
 [[nodiscard]] inline Geometry make_cubic(geometry::Pose const& from, geometry::Pose const& to,
                                          std::string const& where) {
-  double const dx = to.x - from.x, dy = to.y - from.y, chord = std::hypot(dx, dy), direction = std::atan2(dy, dx);
+  double const dx = to.x - from.x, dy = to.y - from.y, chord = portable::hypot(dx, dy),
+               direction = portable::atan2(dy, dx);
   if (!(chord > 1e-3))
     throw MapError(where, "its ends are less than a millimetre apart", "move them apart, or join them without it");
   double const a = geometry::angle_difference(direction, from.heading);
   double const b = geometry::angle_difference(to.heading, direction);
   auto const tangent = [chord](double here, double there) {
-    double const bend = std::sqrt(2.0) * (std::sin(here) - std::sin(there) / 16) *
-                        (std::sin(there) - std::sin(here) / 16) * (std::cos(here) - std::cos(there));
+    double const bend = std::sqrt(2.0) * (portable::sin(here) - portable::sin(there) / 16) *
+                        (portable::sin(there) - portable::sin(here) / 16) *
+                        (portable::cos(here) - portable::cos(there));
     double const flat =
-        1.0 + 0.5 * (std::sqrt(5.0) - 1.0) * std::cos(here) + 0.5 * (3.0 - std::sqrt(5.0)) * std::cos(there);
+        1.0 + 0.5 * (std::sqrt(5.0) - 1.0) * portable::cos(here) + 0.5 * (3.0 - std::sqrt(5.0)) * portable::cos(there);
     return chord * std::clamp((2.0 + bend) / (3.0 * std::max(flat, 0.1)), 0.1, 4.0 / 3.0);
   };
   return make_cubic(from, to, tangent(a, b), tangent(b, a), where);
@@ -133,7 +136,7 @@ CAMBIUM_COLD std::vector<Geometry> lay_to(geometry::Pose end, std::vector<CurveP
   for (std::size_t i = pieces.size(); i-- > 0;) {
     detail::check_piece(pieces[i]);
     auto const local = evaluate(detail::make_geometry(pieces[i], {}), pieces[i].length);
-    double const heading = end.heading - local.heading, c = std::cos(heading), s = std::sin(heading);
+    double const heading = end.heading - local.heading, c = portable::cos(heading), s = portable::sin(heading);
     auto& g = geometries[i];
     g = detail::make_geometry(pieces[i],
                               {end.x - c * local.x + s * local.y, end.y - s * local.x - c * local.y, heading});
@@ -153,7 +156,7 @@ CAMBIUM_COLD std::vector<Geometry> connecting_curve(geometry::Pose const& from, 
   if (std::abs(turn) < 1e-12 && std::abs(way.y()) < 1e-9 && way.x() > 1e-3)
     return lay_from(from, {{detail::round_length(way.x())}});
   // way = before (1, 0) + after (cos, sin)(turn)
-  double const after = way.y() / std::sin(turn), before = way.x() - after * std::cos(turn);
+  double const after = way.y() / portable::sin(turn), before = way.x() - after * portable::cos(turn);
   double const nearer = std::min(before, after), farther = std::max(before, after);
   if (!(std::abs(turn) > 0.01 && std::abs(turn) < 2.8 && nearer > 1e-3 && farther < 3.0 * nearer))
     return {detail::make_cubic(from, to, where)};
@@ -165,7 +168,7 @@ CAMBIUM_COLD std::vector<Geometry> connecting_curve(geometry::Pose const& from, 
   };
   constexpr double unit = 100.0;  // [m] long, the corner takes this much of the two straight ways:
   auto const end = end_of(lay_from({}, corner(unit)));
-  double const taken = std::hypot(end.x, end.y) / (2.0 * std::cos(0.5 * turn));
+  double const taken = portable::hypot(end.x, end.y) / (2.0 * portable::cos(0.5 * turn));
   auto pieces = corner(unit * nearer / taken);
   double const straight = detail::round_length(farther - nearer);
   if (straight > 1e-9) pieces.insert(before > after ? pieces.begin() : pieces.end(), {straight});
@@ -210,7 +213,7 @@ CAMBIUM_COLD std::vector<Geometry> curve_through(std::span<geometry::Point const
   for (std::size_t i = 0; i + 1 < n; ++i) {
     auto const chord = (points[i + 1] - points[i]);
     lengths.push_back(chord.norm());
-    directions.push_back(std::atan2(chord.y(), chord.x()));
+    directions.push_back(portable::atan2(chord.y(), chord.x()));
   }
   auto const turn = [&](std::size_t i) { return geometry::angle_difference(directions[i + 1], directions[i]); };
   auto const share = [&](std::size_t i, std::size_t of) { return lengths[of] / (lengths[i] + lengths[i + 1]); };
@@ -252,7 +255,7 @@ CAMBIUM_COLD std::vector<Geometry> curve_around(std::span<geometry::Point const>
         "it has " + std::to_string(points.size()) + " points, but " + std::to_string(corners.size()) + " corners",
         "give a corner between each two points");
   auto const pose = [](geometry::Point const& at, geometry::Point const& way, std::optional<double> heading) {
-    return geometry::Pose{at.x(), at.y(), detail::round_angle(heading.value_or(std::atan2(way.y(), way.x())))};
+    return geometry::Pose{at.x(), at.y(), detail::round_angle(heading.value_or(portable::atan2(way.y(), way.x())))};
   };
   std::vector<Geometry> geometries;
   for (std::size_t i = 0; i < corners.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/map/road/detail/quadrature.hpp"
 
 namespace cambium::map {
@@ -62,7 +63,7 @@ class ParametricCubic {
     double const du = slope(u_, p), dv = slope(v_, p), w = std::sqrt(du * du + dv * dv);
     double const start_u = u_[1], start_v = v_[1];
     CurvePoint point{value(u_, p) + beyond * du / w, value(v_, p) + beyond * dv / w,
-                     std::atan2(start_u * dv - start_v * du, start_u * du + start_v * dv), 0.0, 0.0};
+                     portable::atan2(start_u * dv - start_v * du, start_u * du + start_v * dv), 0.0, 0.0};
     if (beyond != 0.0) return point;
     double const ddu = 2 * u_[2] + 6 * u_[3] * p, ddv = 2 * v_[2] + 6 * v_[3] * p;
     point.curvature = (du * ddv - dv * ddu) / (w * w * w);
@@ -73,7 +74,7 @@ class ParametricCubic {
   }
 
   /// The direction at the start, from the u axis [rad].
-  [[nodiscard]] double start_direction() const { return std::atan2(v_[1], u_[1]); }
+  [[nodiscard]] double start_direction() const { return portable::atan2(v_[1], u_[1]); }
 
   friend bool operator==(ParametricCubic const&, ParametricCubic const&) = default;
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/stable_sort.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/road/detail/quadrature.hpp"
 #include "cambium/map/road/parametric_cubic.hpp"
@@ -46,7 +46,7 @@ namespace detail {
 /// sin(u) / u, exact to rounding for every u.
 [[nodiscard]] inline double sinc(double u) {
   double const u2 = u * u;
-  return u2 < 1e-6 ? 1.0 - u2 / 6.0 * (1.0 - u2 / 20.0) : std::sin(u) / u;
+  return u2 < 1e-6 ? 1.0 - u2 / 6.0 * (1.0 - u2 / 20.0) : portable::sin(u) / u;
 }
 
 /// Integral of (cos, sin)(heading + curvature u + curvature_rate u^2 / 2) for u over [begin, end], by one panel.
@@ -58,7 +58,7 @@ template <std::size_t N>
   geometry::Point sum;
   for (std::size_t i = 0; i < N; ++i) {
     for (double const u : {middle - half * rule.node[i], middle + half * rule.node[i]}) {
-      auto const [sin, cos] = geometry::sin_cos(heading + u * (curvature + 0.5 * curvature_rate * u));
+      auto const [sin, cos] = portable::sin_cos(heading + u * (curvature + 0.5 * curvature_rate * u));
       sum += rule.weight[i] * geometry::Point(cos, sin);
     }
   }
@@ -96,7 +96,7 @@ namespace detail {
 [[nodiscard]] inline CurvePoint evaluate_cubic(Geometry const& g, double ds) {
   double const stretch = g.cubic->length() / g.length;
   auto const local = g.cubic->at(ds * stretch);
-  double const cos = std::cos(g.heading), sin = std::sin(g.heading);
+  double const cos = portable::cos(g.heading), sin = portable::sin(g.heading);
   return {g.x + cos * local.x - sin * local.y, g.y + sin * local.x + cos * local.y,
           g.heading + g.cubic->start_direction() + local.heading, local.curvature, local.curvature_derivative};
 }
@@ -119,7 +119,7 @@ namespace detail {
   }
   double const half_turn = 0.5 * g.curvature_start * ds;
   double const chord = ds * detail::sinc(half_turn);
-  auto const [sin, cos] = geometry::sin_cos(g.heading + half_turn);
+  auto const [sin, cos] = portable::sin_cos(g.heading + half_turn);
   p.x += chord * cos;
   p.y += chord * sin;
   return p;

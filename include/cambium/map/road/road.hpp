@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/reference_line.hpp"
@@ -92,14 +92,14 @@ struct RoadPoint {
 /// and the factor 1 - curvature t. Planar: superelevation is left out. On the inner side of a bend, beyond its centre,
 /// the curve runs backwards, and so does its heading.
 [[nodiscard]] inline RoadPoint offset_point(CurvePoint const& reference, Lateral const& lateral) {
-  auto const [sin, cos] = geometry::sin_cos(reference.heading);
+  auto const [sin, cos] = portable::sin_cos(reference.heading);
   // With the Frenet frame T, N of the reference line: P = r + t N, P' = along T + slope N, P'' = ddt T + ddn N.
   double const along = 1.0 - reference.curvature * lateral.t;
   double const ddt = -reference.curvature_derivative * lateral.t - 2.0 * reference.curvature * lateral.slope;
   double const ddn = reference.curvature * along + lateral.curvature;
   double const squared = along * along + lateral.slope * lateral.slope;
   double const curvature = squared > 0.0 ? (along * ddn - lateral.slope * ddt) / (squared * std::sqrt(squared)) : 0.0;
-  double const turn = lateral.slope == 0.0 && along > 0.0 ? 0.0 : std::atan2(lateral.slope, along);  // mostly 0
+  double const turn = lateral.slope == 0.0 && along > 0.0 ? 0.0 : portable::atan2(lateral.slope, along);  // mostly 0
   return {reference.x - sin * lateral.t, reference.y + cos * lateral.t, reference.heading + turn, curvature};
 }
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "cambium/core/macros.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/map/road/road_surface.hpp"
 
 namespace cambium::map {
@@ -19,7 +19,7 @@ struct Height {
 };
 
 [[nodiscard]] inline Height crossfall_height(Road const& road, double s, double t) {
-  double const fall = std::tan((t > 0.0 ? road.crossfall_left : road.crossfall_right).value(s));
+  double const fall = portable::tan((t > 0.0 ? road.crossfall_left : road.crossfall_right).value(s));
   return {-std::abs(t) * fall, t > 0.0 ? -fall : fall};
 }
 
@@ -64,9 +64,9 @@ struct Height {
 
 CAMBIUM_COLD SurfacePoint surface_at(Road const& road, double s, double t) {
   auto const reference = road.reference_line.at(s);
-  auto const [sin, cos] = geometry::sin_cos(reference.heading);
-  auto const pitch = geometry::sin_cos(std::atan(road.elevation.derivative(s)));
-  auto const roll = geometry::sin_cos(road.superelevation.value(s));
+  auto const [sin, cos] = portable::sin_cos(reference.heading);
+  auto const pitch = portable::sin_cos(portable::atan(road.elevation.derivative(s)));
+  auto const roll = portable::sin_cos(road.superelevation.value(s));
   Eigen::Vector3d const forward(cos * pitch.cos, sin * pitch.cos, pitch.sin);
   Eigen::Vector3d const level(-sin, cos, 0.0), upright(-cos * pitch.sin, -sin * pitch.sin, pitch.cos);
   Eigen::Vector3d const left = roll.cos * level + roll.sin * upright, up = roll.cos * upright - roll.sin * level;

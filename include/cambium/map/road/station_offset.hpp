@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
@@ -24,9 +24,9 @@ struct StationOffset {
 namespace detail {
 
 [[nodiscard]] inline StationOffset offset_from(CurvePoint const& foot, double s, geometry::Point const& p) {
-  auto const [sin, cos] = geometry::sin_cos(foot.heading);
+  auto const [sin, cos] = portable::sin_cos(foot.heading);
   double const dx = p.x() - foot.x, dy = p.y() - foot.y;
-  return {s, cos * dy - sin * dx, std::hypot(dx, dy)};
+  return {s, cos * dy - sin * dx, portable::hypot(dx, dy)};
 }
 
 /// Newton's method for the foot point of `p` on the geometries of a line: where (p - r(s)) . T(s) = 0.
@@ -41,7 +41,7 @@ class FootFinder {
     double low = -infinity, high = infinity;  // the foot point is between them
     for (int i = 0; i < 100; ++i) {
       auto const r = evaluate(all_[index_], s - all_[index_].s);
-      auto const [sin, cos] = geometry::sin_cos(r.heading);
+      auto const [sin, cos] = portable::sin_cos(r.heading);
       double const dx = p_.x() - r.x, dy = p_.y() - r.y;
       double const ahead = cos * dx + sin * dy, t = cos * dy - sin * dx;
       (ahead > 0.0 ? low : high) = s;
@@ -56,7 +56,7 @@ class FootFinder {
         s = ahead > 0.0 ? begin() : end();
         i = 0;
       } else {
-        return {inside, t, std::hypot(dx, dy)};
+        return {inside, t, portable::hypot(dx, dy)};
       }
     }
     return offset_from(evaluate(all_[index_], s - all_[index_].s), s, p_);
@@ -76,7 +76,7 @@ class FootFinder {
     std::size_t const next = forward ? index_ + 1 : index_ - 1;
     double const joint = forward ? end() : begin();
     auto const r = evaluate(all_[next], joint - all_[next].s);
-    auto const [sin, cos] = geometry::sin_cos(r.heading);
+    auto const [sin, cos] = portable::sin_cos(r.heading);
     double const ahead = cos * (p_.x() - r.x) + sin * (p_.y() - r.y);
     if (forward ? ahead <= 0.0 : ahead >= 0.0) return false;
     index_ = next;
@@ -115,7 +115,7 @@ class FootFinder {
     for (int i = 0; i < count; ++i) {
       double const middle = g.length * (i + 0.5) / count, half = 0.5 * g.length / count;
       auto const at = evaluate(g, middle);
-      double const distance = std::hypot(p.x() - at.x, p.y() - at.y);
+      double const distance = portable::hypot(p.x() - at.x, p.y() - at.y);
       farthest = std::min(farthest, distance);
       pieces.push_back({g.s + middle, distance - half});
     }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "cambium/core/portable_math.hpp"
+
 namespace cambium {
 
 /// A motion in the Frenet frame of a line: `s` and its derivatives in time, the offset and its derivatives in `s`.
@@ -41,7 +43,7 @@ struct LineBend {
 /// Precondition: the offset does not reach the line's centre of curvature.
 template <class Scalar>
 [[nodiscard]] CourseMotion<Scalar> course_motion(FrenetMotion<Scalar> const& f, LineBend<Scalar> const& line) {
-  using std::atan;
+  using portable::atan;
   using std::sqrt;
   Scalar const stretch = Scalar(1) - line.curvature * f.offset, tan = f.slope / stretch,
                inverse_cos = sqrt(Scalar(1) + tan * tan);
@@ -58,8 +60,8 @@ template <class Scalar>
 template <class Scalar>
 [[nodiscard]] FrenetMotion<Scalar> frenet_motion(CourseMotion<Scalar> const& c, Scalar s, Scalar offset,
                                                  LineBend<Scalar> const& line) {
+  using portable::tan;
   using std::sqrt;
-  using std::tan;
   Scalar const stretch = Scalar(1) - line.curvature * offset, slant = tan(c.heading_error),
                inverse_cos = sqrt(Scalar(1) + slant * slant), way = stretch * inverse_cos;
   Scalar const slope = stretch * slant, narrowing = line.change * offset + line.curvature * slope;

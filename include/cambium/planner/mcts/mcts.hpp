@@ -17,6 +17,7 @@
 #include "cambium/behavior/drivers.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/planner/mcts/belief.hpp"
 #include "cambium/planner/mcts/mcts_workspace.hpp"
 #include "cambium/planner/planner_model.hpp"
@@ -296,7 +297,7 @@ struct Mcts {
       nearest = std::min(nearest, likelihoods[r]);
     }
     // Relative to the best; otherwise all would underflow to 0 if no hypothesis explains the observation.
-    for (std::size_t r = 0; r < hypotheses; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
+    for (std::size_t r = 0; r < hypotheses; ++r) likelihoods[r] = portable::exp(nearest - likelihoods[r]);
     other.belief.update({likelihoods.data(), hypotheses}, belief);
   }
 

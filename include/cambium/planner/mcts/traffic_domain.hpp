@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "cambium/behavior/wrap/headway_hypotheses.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/planner/detail/same_scene.hpp"
-#include "cambium/planner/mcts/belief.hpp"
 #include "cambium/planner/mcts/action_set.hpp"
+#include "cambium/planner/mcts/belief.hpp"
 #include "cambium/planner/mcts/traffic_reward.hpp"
 #include "cambium/planner/search/search_domain.hpp"
 
@@ -191,7 +192,7 @@ class TrafficDomain {
   [[nodiscard]] bool same_state(State const& predicted, State const& seen) const {
     auto const is_near = [](auto const& a, auto const& b) {
       return a.status == b.status && a.lane.corridor == b.lane.corridor && std::abs(a.lane.s - b.lane.s) < 0.5 &&
-             std::hypot(a.state.x - b.state.x, a.state.y - b.state.y) < 0.5 &&
+             portable::hypot(a.state.x - b.state.x, a.state.y - b.state.y) < 0.5 &&
              std::abs(geometry::angle_difference(a.state.heading, b.state.heading)) < 0.05 &&
              std::abs(a.state.speed - b.state.speed) < 0.5;
     };

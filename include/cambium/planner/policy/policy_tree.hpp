@@ -11,6 +11,7 @@
 #include "cambium/behavior/actions/macro_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 
 namespace cambium {
 
@@ -125,9 +126,8 @@ struct ChangeProbabilities {
   };
   double const keep = exponent(0.0), left = exponent(prior.lateral_speed), right = exponent(-prior.lateral_speed);
   double const nearest = std::min({keep, left, right});
-  using detail::portable_exp;
-  double const l = prior.change * portable_exp(nearest - left), r = prior.change * portable_exp(nearest - right),
-               k = (1.0 - 2.0 * prior.change) * portable_exp(nearest - keep);
+  double const l = prior.change * portable::exp(nearest - left), r = prior.change * portable::exp(nearest - right),
+               k = (1.0 - 2.0 * prior.change) * portable::exp(nearest - keep);
   return {l / (l + r + k), r / (l + r + k)};
 }
 

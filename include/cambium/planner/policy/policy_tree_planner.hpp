@@ -9,6 +9,7 @@
 
 #include <boost/container/static_vector.hpp>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/planner/candidate_planner.hpp"
 #include "cambium/planner/mcts/action_set.hpp"
@@ -219,7 +220,8 @@ struct PolicyTreePlanner {
       double const aside = std::abs(foot.lateral);
       if (aside < 0.5 * width || aside > 1.5 * width || std::abs(other.lane.heading_error) > 1.0) continue;
       int const side = foot.lateral > 0.0 ? 1 : -1;
-      auto const changes = change_probabilities(intentions, other.state.speed * std::sin(other.lane.heading_error));
+      auto const changes =
+          change_probabilities(intentions, other.state.speed * portable::sin(other.lane.heading_error));
       double const front = foot.s + world.roster().agents[slot].shape.front;
       if (front > at.s - own.shape.rear)
         workspace.intentions.push_back({slot, side > 0 ? Intention::change_right : Intention::change_left,

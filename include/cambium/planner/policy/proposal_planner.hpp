@@ -10,12 +10,12 @@
 
 #include <boost/container/static_vector.hpp>
 
-#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/actions/idm_proposal.hpp"
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/core/constants.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/terms.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/planner/candidate_planner.hpp"
 #include "cambium/planner/search/search_budget.hpp"
 
@@ -288,7 +288,7 @@ struct ProposalPlanner {
     workspace.simulate(steps, step, course, [&](int k) {
       auto const& now = world.frame().agents[ego];
       proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
-                           std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
+                           portable::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
       auto const own = terms.judge(world, ego, step);
       proposal.terms += own.reward;
       auto const end = course_end(world, ego, [&](auto const& predicted, Slot slot) {

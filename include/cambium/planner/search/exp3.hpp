@@ -6,6 +6,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
 namespace cambium {
@@ -60,7 +61,7 @@ struct Exp3 {
   /// Weight of the arm, relative to that of the best one so that it does not overflow.
   template <class Arm>
   [[nodiscard]] double weight(Arm const& arm, double best, std::size_t arms) const {
-    return detail::portable_exp(exploration * (arm.statistics.gain - best) / static_cast<double>(arms));
+    return portable::exp(exploration * (arm.statistics.gain - best) / static_cast<double>(arms));
   }
 
   template <class Arms>

@@ -11,6 +11,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/planner/search/detail/search_tree.hpp"
 #include "cambium/planner/search/search_domain.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
@@ -118,7 +119,7 @@ template <class Action>
   double cheapest = 1.0;
   for (auto const& arm : arms)
     if (arm.visits > 0) cheapest = std::min(cheapest, estimated_cost(arm));
-  double const log_visits = portable_log(std::max(1.0, static_cast<double>(total_visits(arms))));
+  double const log_visits = portable::log(std::max(1.0, static_cast<double>(total_visits(arms))));
   double const limit = std::max(cheapest, cost_limit);
   if (cost_limit < 1.0) scale.multiplier = 0.0;  // within the limit, costs do not count
   auto const merit = [&](RootArm<Action> const& arm) {

@@ -8,6 +8,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 
 namespace cambium {
 
@@ -38,7 +39,7 @@ struct WideningSchedule {
     from.clear();
     while (from.size() + 1 < longest) {
       double const share = static_cast<double>(from.size() + 2) / widening.coefficient;
-      double const visits = share <= 1.0 ? 0.0 : portable_power(share, 1.0 / widening.exponent);
+      double const visits = share <= 1.0 ? 0.0 : portable::pow(share, 1.0 / widening.exponent);
       if (!(visits <= static_cast<double>(most_visits))) break;
       from.push_back(visits);
     }

@@ -8,6 +8,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
 namespace cambium {
@@ -31,7 +32,7 @@ struct Ucb1 {
   [[nodiscard]] std::size_t select(Arms const& arms, std::uint32_t visits, ReturnScale const& scale,
                                    Random& random) const {
     if (auto const untried = detail::untried_arm(arms, random); untried < arms.size()) return untried;
-    double const log_visits = detail::portable_log(static_cast<double>(visits));
+    double const log_visits = portable::log(static_cast<double>(visits));
     return detail::best_arm(
         arms, [&](auto const& arm) { return scale.score(arm) + exploration * std::sqrt(log_visits / arm.visits); });
   }
@@ -69,7 +70,7 @@ struct Ucb1Tuned {
   [[nodiscard]] std::size_t select(Arms const& arms, std::uint32_t visits, ReturnScale const& scale,
                                    Random& random) const {
     if (auto const untried = detail::untried_arm(arms, random); untried < arms.size()) return untried;
-    double const log_visits = detail::portable_log(static_cast<double>(visits));
+    double const log_visits = portable::log(static_cast<double>(visits));
     return detail::best_arm(arms, [&](auto const& arm) {
       double const mean = arm.statistics.scores / arm.visits;
       double const variance = std::max(0.0, arm.statistics.squares / arm.visits - mean * mean);

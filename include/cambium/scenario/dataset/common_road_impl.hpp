@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +13,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/common_road.hpp"
@@ -134,7 +134,7 @@ class CommonRoadReader : private CommonRoadLanes {
   /// From the origin of the obstacle's frame to the middle of its shape.
   static void shift(State& state, CommonRoadShape const& shape) {
     if (shape.center != geometry::Point{}) {
-      double const c = std::cos(state.heading), s = std::sin(state.heading);
+      double const c = portable::cos(state.heading), s = portable::sin(state.heading);
       state.x += c * shape.center.x() - s * shape.center.y();
       state.y += s * shape.center.x() + c * shape.center.y();
     }
@@ -171,7 +171,7 @@ class CommonRoadReader : private CommonRoadLanes {
       if (shape->is_rectangle)
         state.heading = shape->heading;
       else if (way.norm() > 0.1)
-        state.heading = std::atan2(way.y(), way.x());
+        state.heading = portable::atan2(way.y(), way.x());
       state = {*step * traffic_.time_step, shape->center.x(), shape->center.y(), state.heading,
                passed > 0.0 ? way.norm() / passed : 0.0};
       add_state(child, track, state);

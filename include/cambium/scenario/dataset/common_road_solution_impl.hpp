@@ -12,8 +12,9 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/core/stable_sort.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
+#include "cambium/core/stable_sort.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/common_road_solution.hpp"
@@ -69,9 +70,9 @@ CAMBIUM_COLD std::string common_road_solution_text(CommonRoadSolution const& sol
       text.attribute("planningProblem", std::to_string(solution.problem));
       for (std::size_t i = 0; i < states.size(); ++i) {
         auto const &state = states[i], &a = states[i > 0 ? i - 1 : 0], &b = states[std::min(i + 1, states.size() - 1)];
-        double const way = std::hypot(b.x - a.x, b.y - a.y);
+        double const way = portable::hypot(b.x - a.x, b.y - a.y);
         double const turn = geometry::angle_difference(b.heading, a.heading);
-        double const steering = way > 1e-3 ? std::atan(wheelbase * turn / way) : 0.0;
+        double const steering = way > 1e-3 ? portable::atan(wheelbase * turn / way) : 0.0;
         text.element("ksState", [&] {
           leaf("x", number_text(state.x));
           leaf("y", number_text(state.y));
@@ -119,8 +120,8 @@ CAMBIUM_COLD CommonRoadSolution parse_common_road_solution(std::string_view text
     State state{number("time") * time_step, number("x"), number("y"), 0.0, 0.0};
     if (is_point_mass) {
       double const vx = number("xVelocity"), vy = number("yVelocity");
-      state.heading = std::atan2(vy, vx);
-      state.speed = std::hypot(vx, vy);
+      state.heading = portable::atan2(vy, vx);
+      state.speed = portable::hypot(vx, vy);
     } else {
       state.heading = number("orientation");
       state.speed = number("velocity");

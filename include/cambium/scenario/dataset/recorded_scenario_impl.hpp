@@ -14,6 +14,7 @@
 #include "cambium/core/constants.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/polygon.hpp"
@@ -143,8 +144,8 @@ class LaneMatcher {
     if (points.empty() || (geometry::Point{state.x, state.y} - points.back()).norm() >= apart)
       points.emplace_back(state.x, state.y);
   auto const& last = states.back();
-  points.emplace_back(points.back().x() + beyond * std::cos(last.heading),
-                      points.back().y() + beyond * std::sin(last.heading));
+  points.emplace_back(points.back().x() + beyond * portable::cos(last.heading),
+                      points.back().y() + beyond * portable::sin(last.heading));
   bool const walks = track.type == TrackType::pedestrian;
   return map::build_free_corridor(
       map, points,
@@ -187,7 +188,7 @@ CAMBIUM_COLD std::vector<map::LightPlan> lights_from(RecordedTraffic const& traf
 CAMBIUM_COLD geometry::Polygon outline_of(Track const& track) {
   auto const& at = track.states.front();
   if (!track.outline.empty()) {
-    auto const [sin, cos] = geometry::sin_cos(at.heading);
+    auto const [sin, cos] = portable::sin_cos(at.heading);
     std::vector<geometry::Point> corners;
     for (auto const& p : track.outline)
       corners.emplace_back(at.x + cos * p.x() - sin * p.y(), at.y + sin * p.x() + cos * p.y());

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -12,6 +11,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/state.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/polygon.hpp"
@@ -77,15 +77,15 @@ struct Track {
 
 /// The state of a body's reference point where that of its middle is known.
 [[nodiscard]] inline State reference_state(State middle, geometry::Shape const& shape) {
-  middle.x -= shape.center_offset() * std::cos(middle.heading);
-  middle.y -= shape.center_offset() * std::sin(middle.heading);
+  middle.x -= shape.center_offset() * portable::cos(middle.heading);
+  middle.y -= shape.center_offset() * portable::sin(middle.heading);
   return middle;
 }
 
 /// The state of a body's middle where that of its reference point is known.
 [[nodiscard]] inline State middle_state(State reference, geometry::Shape const& shape) {
-  reference.x += shape.center_offset() * std::cos(reference.heading);
-  reference.y += shape.center_offset() * std::sin(reference.heading);
+  reference.x += shape.center_offset() * portable::cos(reference.heading);
+  reference.y += shape.center_offset() * portable::sin(reference.heading);
   return reference;
 }
 
@@ -100,8 +100,8 @@ struct GoalState {
   /// Whether everything but the time is met.
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
     double const ahead = at.shape.center_offset();
-    geometry::Point const middle{at.pose.x + ahead * std::cos(at.pose.heading),
-                                 at.pose.y + ahead * std::sin(at.pose.heading)};
+    geometry::Point const middle{at.pose.x + ahead * portable::cos(at.pose.heading),
+                                 at.pose.y + ahead * portable::sin(at.pose.heading)};
     return limits.at_goal(at) && (areas.empty() || std::any_of(areas.begin(), areas.end(), [&](auto const& area) {
                                     return area.contains(middle);
                                   }));

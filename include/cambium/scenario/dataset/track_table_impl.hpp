@@ -16,6 +16,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/read_file.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/core/text.hpp"
@@ -194,7 +195,7 @@ class TrackTableReader {
       auto const velocity = turned(*number(cells, vx) * unit, *number(cells, vy) * unit);
       row.vx = velocity.x();
       row.vy = velocity.y();
-      row.state.speed = std::hypot(row.vx, row.vy);
+      row.state.speed = portable::hypot(row.vx, row.vy);
     }
     if (auto const fast = number(cells, speed)) row.state.speed = *fast * unit;
     read_[at->second].rows.push_back(row);
@@ -290,8 +291,8 @@ class TrackTableReader {
   void move_front_to_middle(Read& read) const {
     if (table_.anchor != TrackAnchor::front_middle) return;
     for (auto& row : read.rows) {
-      row.state.x -= 0.5 * read.track.length * std::cos(row.state.heading);
-      row.state.y -= 0.5 * read.track.length * std::sin(row.state.heading);
+      row.state.x -= 0.5 * read.track.length * portable::cos(row.state.heading);
+      row.state.y -= 0.5 * read.track.length * portable::sin(row.state.heading);
     }
   }
 
@@ -304,7 +305,7 @@ class TrackTableReader {
       double dx = rows[i].vx, dy = rows[i].vy;
       if (!has_velocity()) {
         auto const apart = [&](std::size_t a, std::size_t b) {
-          return std::hypot(rows[b].state.x - rows[a].state.x, rows[b].state.y - rows[a].state.y);
+          return portable::hypot(rows[b].state.x - rows[a].state.x, rows[b].state.y - rows[a].state.y);
         };
         while (before + 1 < i && apart(before + 1, i) >= 0.5 * shortest) ++before;
         behind = std::max(behind, i);
@@ -312,10 +313,10 @@ class TrackTableReader {
         if (apart(before, behind) < shortest) continue;
         dx = rows[behind].state.x - rows[before].state.x;
         dy = rows[behind].state.y - rows[before].state.y;
-      } else if (std::hypot(dx, dy) < slow) {
+      } else if (portable::hypot(dx, dy) < slow) {
         continue;
       }
-      rows[i].state.heading = std::atan2(dy, dx);
+      rows[i].state.heading = portable::atan2(dy, dx);
       known[i] = true;
     }
     auto const first = std::find(known.begin(), known.end(), true) - known.begin();
@@ -335,8 +336,8 @@ class TrackTableReader {
       double const passed = b.time - a.time;
       if (!(passed > 0.0)) continue;
       double const dx = b.x - a.x, dy = b.y - a.y,
-                   along = (dx * std::cos(state.heading) + dy * std::sin(state.heading)) / passed,
-                   fast = std::hypot(dx, dy) / passed;
+                   along = (dx * portable::cos(state.heading) + dy * portable::sin(state.heading)) / passed,
+                   fast = portable::hypot(dx, dy) / passed;
       if (!has_speed()) state.speed = fast;
       if (along < -0.5 * fast && fast > 0.3) state.speed = -std::abs(state.speed);
       if (std::abs(std::abs(state.speed) - fast) > 3.0 + 0.3 * fast && ++contradictions == 1) first = rows[i].line;
@@ -426,8 +427,8 @@ CAMBIUM_COLD std::string interaction_text(RecordedTraffic const& traffic) {
       auto const frame = std::llround(state.time / traffic.time_step);
       text += std::to_string(track.id) + "," + std::to_string(frame) + "," + std::to_string(milliseconds) + "," +
               to_string(track.type);
-      for (double const value : {state.x, state.y, state.speed * std::cos(state.heading),
-                                 state.speed * std::sin(state.heading), state.heading, track.length, track.width})
+      for (double const value : {state.x, state.y, state.speed * portable::cos(state.heading),
+                                 state.speed * portable::sin(state.heading), state.heading, track.length, track.width})
         text += "," + number_text(value);
       text += "\n";
     }

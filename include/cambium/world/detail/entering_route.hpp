@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
@@ -38,8 +39,8 @@ namespace cambium::detail {
     auto const widths = lane.widths_at(std::clamp(foot.s, 0.0, lane.length()));
     double const beyond = std::max({-foot.s, foot.s - lane.length(), 0.0});
     double const outside =
-        std::hypot(std::max({foot.lateral - widths.left, -foot.lateral - widths.right, 0.0}), beyond);
-    double const distance = std::hypot(foot.lateral, beyond);
+        portable::hypot(std::max({foot.lateral - widths.left, -foot.lateral - widths.right, 0.0}), beyond);
+    double const distance = portable::hypot(foot.lateral, beyond);
     double const along = lane.path.pose(foot.s).heading;
     double const turn = heading ? std::abs(geometry::angle_difference(*heading, along)) : 0.0;
     if (outside > entering_radius || turn > geometry::pi / 2 || distance + 3.0 * turn >= smallest) continue;

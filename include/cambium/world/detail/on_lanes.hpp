@@ -8,7 +8,7 @@
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
@@ -121,7 +121,7 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
 
 /// The distance of a place from its lane corridor [m].
 [[nodiscard]] inline double distance_from(map::RoadCorridor const& road, map::LanePlace const& at) {
-  return std::hypot(at.lateral, std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0}));
+  return portable::hypot(at.lateral, std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0}));
 }
 
 /// The place of `pose` on `road` for an agent that was at `last`: in the same lane corridor if the pose fits, else on
@@ -174,7 +174,7 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
   auto const add = [&](Slot slot, ReachingEntries& reaching) {
     auto const& record = frame.agents[slot];
     auto const& agent = roster.agents[slot];
-    double const speed = record.state.speed * geometry::sin_cos_often_slight(record.lane.heading_error).cos;
+    double const speed = record.state.speed * portable::sin_cos_often_slight(record.lane.heading_error).cos;
     TrafficEntry entry{
         record.lane.index, agent.shape.front, agent.shape.rear, speed, slot, static_cast<std::uint32_t>(agent.id)};
     if (record.status != AgentStatus::driving) {

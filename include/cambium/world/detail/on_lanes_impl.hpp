@@ -6,6 +6,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -21,7 +22,7 @@ namespace cambium::detail {
 [[nodiscard]] inline TrafficEntry entry_in(map::Lane const& lane, double s, BodyOnRoad const& body,
                                            TrafficEntry entry) {
   double const turn = body.pose.heading - lane.path.pose(s).heading;
-  auto const [sin, cos] = geometry::sin_cos(turn);
+  auto const [sin, cos] = portable::sin_cos(turn);
   auto const reach = geometry::extent_along(body.shape, cos, sin);
   entry.position = lane.index_begin + std::clamp(s, 0.0, lane.length());
   entry.front = reach.positive;
@@ -45,7 +46,7 @@ inline void enter_touched(Map const& map, BodyOnRoad const& body, TrafficEntry c
     auto const& lane = map.lane(hit.lane);
     auto const found = entry_in(lane, hit.s, body, entry);
     double const turn = body.pose.heading - lane.path.pose(hit.s).heading;
-    auto const [sin, cos] = geometry::sin_cos(turn);
+    auto const [sin, cos] = portable::sin_cos(turn);
     auto const aside = geometry::extent_along(shape, sin, -cos);
     auto const widths = lane.widths_at(std::clamp(hit.s, 0.0, lane.length()), hit.segment);
     bool const is_beside = hit.lateral - aside.negative > widths.left || hit.lateral + aside.positive < -widths.right;
@@ -66,7 +67,7 @@ CAMBIUM_COLD bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry 
     return true;
   }
   auto const& lane = map.lane(corridor.pieces[at.piece].lane);
-  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  auto const [sin, cos] = portable::sin_cos(at.heading_error);
   auto const reach = geometry::extent_along(body.shape, sin, -cos);
   double const left = at.lateral + reach.positive, right = reach.negative - at.lateral;
   auto const widths = corridor.widths_at(at.s, at.segment);
@@ -88,11 +89,12 @@ CAMBIUM_COLD bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry 
       return;
     }
     double const along = pose.heading - at.heading_error;
-    geometry::Point const side{pose.x - std::sin(along) * to_the_side, pose.y + std::cos(along) * to_the_side};
+    geometry::Point const side{pose.x - portable::sin(along) * to_the_side,
+                               pose.y + portable::cos(along) * to_the_side};
     auto const hit = map.nearest_lane({side.x(), side.y(), along + geometry::pi}, 0.0);
     if (!hit || hit->distance > 0.0) return;
     auto const& oncoming = map.lane(hit->lane);
-    if (std::cos(oncoming.path.pose(hit->s).heading - along) < 0.0)
+    if (portable::cos(oncoming.path.pose(hit->s).heading - along) < 0.0)
       add_in(oncoming, entry_in(oncoming, hit->s, body, entry), list);
   };
   if (left > widths.left) enter(lane.left_neighbor, reach.positive);

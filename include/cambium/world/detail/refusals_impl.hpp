@@ -9,6 +9,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/corridor/lane_place.hpp"
@@ -34,7 +35,7 @@ CAMBIUM_COLD double distance_outside(map::RoadCorridor const& road, map::LanePla
   auto const& corridor = road.corridors[at.corridor];
   auto const widths = corridor.widths_at(std::clamp(at.s, 0.0, corridor.length()), at.segment);
   double const aside = std::max({at.lateral - widths.left, -at.lateral - widths.right, 0.0});
-  return std::hypot(aside, std::max({-at.s, at.s - corridor.length(), 0.0}));
+  return portable::hypot(aside, std::max({-at.s, at.s - corridor.length(), 0.0}));
 }
 
 CAMBIUM_COLD void check_heading(Map const& map, map::RoadCorridor const& road, map::LanePlace const& at,

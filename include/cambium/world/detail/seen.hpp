@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/random.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/observer/observer_model.hpp"
 #include "cambium/world/frame.hpp"
@@ -110,13 +110,13 @@ template <class Plan, class State>
 void carry_over(Plan& plan, State const& believed, State const& truth) {
   if (believed == truth) return;  // bit-equal to the result with a perfect observer
   double const turn = truth.heading - believed.heading, faster = truth.speed - believed.speed;
-  auto const [sin, cos] = geometry::sin_cos(turn);
+  auto const [sin, cos] = portable::sin_cos(turn);
   for (auto& state : plan.trajectory) {
     double const dx = state.x - believed.x, dy = state.y - believed.y;
     double const speed = std::max(0.0, state.speed + faster), gained = speed - state.speed;
     double const further = 0.5 * (faster + gained) * (state.time - truth.time);
     state.heading += turn;
-    auto const along = geometry::sin_cos(state.heading);
+    auto const along = portable::sin_cos(state.heading);
     state.x = truth.x + cos * dx - sin * dy + further * along.cos;
     state.y = truth.y + sin * dx + cos * dy + further * along.sin;
     state.speed = speed;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
@@ -29,7 +30,7 @@ inline constexpr bool misplaces =
 /// centre line, and it is turned by `turn` [rad] against the lane.
 [[nodiscard]] inline bool reaches_into(geometry::Shape const& shape, double lateral, double turn,
                                        map::SideWidths const& widths) {
-  auto const [sin, cos] = geometry::sin_cos(turn);
+  auto const [sin, cos] = portable::sin_cos(turn);
   auto const reach = geometry::extent_along(shape, sin, -cos);
   return lateral + reach.positive > -widths.right && lateral - reach.negative < widths.left;
 }

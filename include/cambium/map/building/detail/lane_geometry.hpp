@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -37,7 +38,7 @@ template <class PathOf>
   constexpr double kink = 1e-3;  // [m]
   bool folded = false;
   auto const add_if_apart = [](std::vector<geometry::LineSample>& samples, geometry::LineSample const& p) {
-    if (!samples.empty() && std::hypot(p.x - samples.back().x, p.y - samples.back().y) < 1e-6) return false;
+    if (!samples.empty() && portable::hypot(p.x - samples.back().x, p.y - samples.back().y) < 1e-6) return false;
     samples.push_back(p);
     return true;
   };
@@ -50,11 +51,11 @@ template <class PathOf>
     };
     auto const &high = cross.borders[column], &low = cross.borders[column + 1];
     auto p = at(on_path);
-    bool const is_new = path.empty() || std::hypot(p.x - path.back().x, p.y - path.back().y) >= 1e-6;
+    bool const is_new = path.empty() || portable::hypot(p.x - path.back().x, p.y - path.back().y) >= 1e-6;
     bool const folds = path.size() > 1 && is_new && !geometry::goes_on(path.back(), p);
     if (folds && !folded) {  // beside a kink: it turns there, and goes on where it is ahead again
-      p.x = path.back().x + kink * std::cos(p.heading);
-      p.y = path.back().y + kink * std::sin(p.heading);
+      p.x = path.back().x + kink * portable::cos(p.heading);
+      p.y = path.back().y + kink * portable::sin(p.heading);
     }
     if (is_new && !(folds && folded)) {
       path.push_back(p);

@@ -11,7 +11,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/building/detail/lane_geometry.hpp"
 #include "cambium/map/building/detail/path_check.hpp"
@@ -73,7 +73,7 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
   auto const across = [&](double s) {  // to the neighbour's path, left positive [m]
     auto const at = lane.path.pose(s);
     auto const foot = onto.path.pose(onto.path.project(at.position()).s);
-    auto const [sin, cos] = geometry::sin_cos(at.heading);
+    auto const [sin, cos] = portable::sin_cos(at.heading);
     return (foot.y - at.y) * cos - (foot.x - at.x) * sin;
   };
   std::vector<double> places;
@@ -94,9 +94,9 @@ inline void swing_over(Lane& lane, Lane const& onto, double longest) {
       lateral = w.value * t;
       slope = w.value * (across(behind) - across(before)) / (behind - before) + w.slope / (length - from) * t;
     }
-    auto const [sin, cos] = geometry::sin_cos(at.heading);
+    auto const [sin, cos] = portable::sin_cos(at.heading);
     path.push_back({at.x - sin * lateral, at.y + cos * lateral,
-                    at.heading + std::atan2(slope, 1.0 - lane.path.curvature(s) * lateral)});
+                    at.heading + portable::atan2(slope, 1.0 - lane.path.curvature(s) * lateral)});
     auto const w = lane.widths_at(s);
     widths.push_back({w.left - lateral, w.right + lateral});
     stations.push_back(lane.station_at(s));

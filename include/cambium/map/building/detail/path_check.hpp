@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane.hpp"
@@ -55,7 +56,7 @@ struct SharpestTurn {
   for (auto const& segment : path.segments()) {
     double const middle = segment.heading + 0.5 * segment.curvature * segment.length;
     if (segment.length >= shortest &&
-        std::abs(geometry::angle_difference(std::atan2(segment.uy, segment.ux), middle)) > most)
+        std::abs(geometry::angle_difference(portable::atan2(segment.uy, segment.ux), middle)) > most)
       return segment.s;
   }
   return std::nullopt;

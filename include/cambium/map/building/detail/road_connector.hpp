@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/building/detail/document_index.hpp"
@@ -90,7 +91,7 @@ struct LaneSpan {
 [[nodiscard]] inline geometry::Pose pose_at(opendrive::RoadElement const& road, ContactPoint end, double t) {
   auto const& g = end == ContactPoint::end ? road.geometries.back() : road.geometries.front();
   auto const p = evaluate(g, end == ContactPoint::end ? g.length : 0.0);
-  return {p.x - t * std::sin(p.heading), p.y + t * std::cos(p.heading),
+  return {p.x - t * portable::sin(p.heading), p.y + t * portable::cos(p.heading),
           p.heading + (end == ContactPoint::end ? 0.0 : geometry::pi)};
 }
 

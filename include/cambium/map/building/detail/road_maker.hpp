@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
@@ -71,7 +72,7 @@ class RoadMaker {
                  cambium::detail::rounded_text(end) + " m, where the previous one ends",
              remedy);
       auto const begin = evaluate(g, 0.0);
-      double const gap = before ? std::hypot(begin.x - before->x, begin.y - before->y) : 0.0;
+      double const gap = before ? portable::hypot(begin.x - before->x, begin.y - before->y) : 0.0;
       double const turn = before ? std::abs(geometry::angle_difference(begin.heading, before->heading)) : 0.0;
       if (!(gap <= tolerance && turn <= tolerance))
         fail(which + " begins " + cambium::detail::rounded_text(gap) + " m and " + cambium::detail::rounded_text(turn) +

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/map.hpp"
@@ -29,12 +30,12 @@ namespace cambium::map::detail {
 struct CrossSection {
   double s{};
   CurvePoint reference;
-  geometry::SinCos direction;  ///< of the reference line
+  portable::SinCos direction;  ///< of the reference line
   std::vector<Lateral> borders;
 
   /// Point and direction of the curve at `lateral` (with the curve's slope and the factor 1 - curvature t).
   [[nodiscard]] geometry::LineSample at(Lateral const& lateral) const {
-    double const turn = std::atan2(lateral.slope, 1.0 - reference.curvature * lateral.t);
+    double const turn = portable::atan2(lateral.slope, 1.0 - reference.curvature * lateral.t);
     return {reference.x - direction.sin * lateral.t, reference.y + direction.cos * lateral.t, reference.heading + turn};
   }
   /// Middle between border `i` and the next.
@@ -119,7 +120,7 @@ class SectionSampler {
                        near != nullptr ? advance(g, near->reference, near->s, s) : evaluate(g, s - g.s),
                        {},
                        std::vector<Lateral>(section_.lanes.size() + 1)};
-    cross.direction = geometry::sin_cos(cross.reference.heading);
+    cross.direction = portable::sin_cos(cross.reference.heading);
     cross.borders[left_lanes_] = lateral_at(road_.lane_offset, s, inside);
     double const ds = s - section_.begin, at = inside - section_.begin;
     for (std::size_t i = left_lanes_; i-- > 0;)
@@ -146,15 +147,15 @@ class SectionSampler {
   }
 
   [[nodiscard]] bool breaks(geometry::LineSample const& a, geometry::LineSample const& b) const {
-    return std::hypot(b.x - a.x, b.y - a.y) > 0.3 * options_.position_tolerance ||
+    return portable::hypot(b.x - a.x, b.y - a.y) > 0.3 * options_.position_tolerance ||
            std::abs(geometry::angle_difference(b.heading, a.heading)) > options_.heading_tolerance;
   }
 
   /// How far `m` is from the chord from `a` to `b` [m].
   [[nodiscard]] static double off_chord(geometry::LineSample const& a, geometry::LineSample const& m,
                                         geometry::LineSample const& b) {
-    double const dx = b.x - a.x, dy = b.y - a.y, chord = std::hypot(dx, dy);
-    return chord > 1e-9 ? std::abs(dx * (m.y - a.y) - dy * (m.x - a.x)) / chord : std::hypot(m.x - a.x, m.y - a.y);
+    double const dx = b.x - a.x, dy = b.y - a.y, chord = portable::hypot(dx, dy);
+    return chord > 1e-9 ? std::abs(dx * (m.y - a.y) - dy * (m.x - a.x)) / chord : portable::hypot(m.x - a.x, m.y - a.y);
   }
 
   /// Whether a straight chord from `a` to `b` is good enough for a curve through `m`.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/shape.hpp"
@@ -52,7 +53,7 @@ inline void add_ways_on(Map const& map, LaneId at, bool ahead, double reach, std
   double const on_path = std::clamp(s, 0.0, lane->length());
   auto const pose = lane->path.pose(on_path);
   if (s == on_path) return pose;
-  return {pose.x + (s - on_path) * std::cos(pose.heading), pose.y + (s - on_path) * std::sin(pose.heading),
+  return {pose.x + (s - on_path) * portable::cos(pose.heading), pose.y + (s - on_path) * portable::sin(pose.heading),
           pose.heading};
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -141,7 +142,7 @@ class ConflictFinder {
   /// Whether bodies on the two paths may touch, by circles around the paths.
   [[nodiscard]] bool is_near(Lane const& a, Lane const& b) const {
     auto const p = a.path.pose(0.5 * a.length()), q = b.path.pose(0.5 * b.length());
-    return std::hypot(p.x - q.x, p.y - q.y) < 0.5 * (a.length() + b.length()) + before();
+    return portable::hypot(p.x - q.x, p.y - q.y) < 0.5 * (a.length() + b.length()) + before();
   }
 
   /// The lanes of its junction whose paths keep apart from the lane's: bodies that swing out in bends may touch there.

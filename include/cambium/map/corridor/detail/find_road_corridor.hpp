@@ -15,6 +15,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
@@ -45,7 +46,7 @@ inline constexpr double goal_radius = 5.0;  ///< how far from a lane a start or 
   constexpr double step = 0.5;  // [m]
   auto const& box = area.bounding_box();
   auto const center = box.center();
-  double const radius = std::hypot(box.max_x - center.x(), box.max_y - center.y());
+  double const radius = portable::hypot(box.max_x - center.x(), box.max_y - center.y());
   std::vector<LaneStation> stations;
   for (auto const& hit : map.lanes_near(center, radius)) {
     auto const& lane = map.lane(hit.lane);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -35,14 +36,14 @@ namespace cambium::map::detail {
       points.push_back(corner);
       continue;
     }
-    double const cut = std::min(radius * std::tan(0.5 * size), 0.45 * std::min(in.length, out.length));
+    double const cut = std::min(radius * portable::tan(0.5 * size), 0.45 * std::min(in.length, out.length));
     int const parts = static_cast<int>(std::ceil(size / step));
     for (int k = 0; k <= parts; ++k) {
-      double const angle = size * k / parts;                             // that has been turned by
-      double const done = std::sin(0.5 * angle) / std::sin(0.5 * size);  // chord over the whole chord
+      double const angle = size * k / parts;                                       // that has been turned by
+      double const done = portable::sin(0.5 * angle) / portable::sin(0.5 * size);  // chord over the whole chord
       geometry::Point const begin = corner - cut * u, chord = cut * (u + v);
       double const aside = std::copysign(0.5 * (size - angle), turn);
-      double const c = std::cos(aside), s = -std::sin(aside);
+      double const c = portable::cos(aside), s = -portable::sin(aside);
       points.push_back(begin + done * geometry::Point(c * chord.x() - s * chord.y(), s * chord.x() + c * chord.y()));
     }
   }

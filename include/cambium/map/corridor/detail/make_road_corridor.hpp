@@ -12,6 +12,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/corridor/detail/bends.hpp"
@@ -88,7 +89,7 @@ class LaneJoiner {
   [[nodiscard]] double bridge_length(Lane const& lane, geometry::LineSample const& begin) const {
     constexpr double tolerance = 1e-3;  // [m], [rad]
     auto const& end = center_.back();
-    double const gap = std::hypot(begin.x - end.x, begin.y - end.y);
+    double const gap = portable::hypot(begin.x - end.x, begin.y - end.y);
     double const turn = std::abs(geometry::angle_difference(begin.heading, end.heading));
     double const left = lane.widths.front().left - widths_.back().left,
                  right = lane.widths.front().right - widths_.back().right;
@@ -100,7 +101,7 @@ class LaneJoiner {
 
   static void append_border(std::vector<geometry::LineSample>& border, geometry::Line const& line) {
     for (auto const& p : line.samples())
-      if (border.empty() || std::hypot(p.x - border.back().x, p.y - border.back().y) > 0.01) border.push_back(p);
+      if (border.empty() || portable::hypot(p.x - border.back().x, p.y - border.back().y) > 0.01) border.push_back(p);
   }
 
   [[nodiscard]] IdVector<CorridorPiece, PieceId> make_pieces(geometry::Line const& center) const {

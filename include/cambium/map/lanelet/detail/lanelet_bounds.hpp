@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanelet/lanelet.hpp"
@@ -200,7 +200,7 @@ struct LaneletCenter {
     Point const begin = middle(corners[i]), end = middle(corners[i + 1]), way = (end - begin).normalized();
     auto const add = [&](double u, Point const& p) {
       center.points.push_back(p);
-      center.headings.push_back(std::atan2(way.y(), way.x()));
+      center.headings.push_back(portable::atan2(way.y(), way.x()));
       center.left.push_back(bounds.left.at(u));
       center.right.push_back(bounds.right.at(u));
       Point const across = center.left.back() - center.right.back();

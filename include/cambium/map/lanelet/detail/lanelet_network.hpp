@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
@@ -326,7 +327,7 @@ class LaneletNetwork {
         auto const& [begins, ends] = ways[joints.find(end(i, at_end != 0))];
         if (begins == Point{} || ends == Point{}) continue;
         auto const way = end_way(centers[i], at_end != 0), common = begins.normalized() + ends.normalized();
-        double const own = std::atan2(way.y(), way.x()), wanted = std::atan2(common.y(), common.x());
+        double const own = portable::atan2(way.y(), way.x()), wanted = portable::atan2(common.y(), common.x());
         headings[i][at_end] = own + std::clamp(geometry::angle_difference(wanted, own), -most, most);
       }
   }

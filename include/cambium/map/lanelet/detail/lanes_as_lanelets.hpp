@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
-#include "cambium/geometry/angle.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/lanes/lane.hpp"
@@ -168,7 +168,7 @@ class LanesAsLanelets {
       auto const& g = segments[i];
       double const along = (p.x() - g.x) * g.ux + (p.y() - g.y) * g.uy;
       double const s = std::max(from, g.s + std::clamp(along, 0.0, g.length)), way = s - g.s;
-      double const away = std::hypot(p.x() - g.x - way * g.ux, p.y() - g.y - way * g.uy);
+      double const away = portable::hypot(p.x() - g.x - way * g.ux, p.y() - g.y - way * g.uy);
       if (away < nearest) std::tie(nearest, found) = std::pair(away, s);
     }
     return found;
@@ -198,7 +198,7 @@ class LanesAsLanelets {
       while (s < ends[k]) {
         s = std::min(s + step, ends[k]);
         auto const pose = lane.path.pose(s);
-        auto const along = geometry::sin_cos(pose.heading);
+        auto const along = portable::sin_cos(pose.heading);
         auto const widths = lane.widths_at(s);
         double const aside = left ? widths.left : -widths.right;
         place = place_ahead(line, {pose.x - aside * along.sin, pose.y + aside * along.cos}, place, reach);

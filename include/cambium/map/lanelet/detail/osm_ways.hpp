@@ -16,6 +16,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
@@ -246,7 +247,7 @@ class OsmWays {
     double const north = std::max(std::abs(degrees.max_y - origin.latitude), std::abs(degrees.min_y - origin.latitude)),
                  east = std::max(std::abs(std::remainder(degrees.max_x - origin.longitude, 360.0)),
                                  std::abs(std::remainder(degrees.min_x - origin.longitude, 360.0)));
-    double const way = of_degree * std::hypot(north, east * std::cos(origin.latitude * geometry::pi / 180));
+    double const way = of_degree * portable::hypot(north, east * portable::cos(origin.latitude * geometry::pi / 180));
     if (way > far)
       context_.report(Severity::warning, 0, "node",
                       "places lie up to " + cambium::detail::rounded_text(std::round(way)) +

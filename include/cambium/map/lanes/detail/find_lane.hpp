@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -8,6 +7,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/lane_tree.hpp"
@@ -74,7 +74,7 @@ namespace cambium::map::detail {
   auto const widths = lane.widths_at(foot.s, foot.segment);
   if (foot.lateral > widths.left || foot.lateral < -widths.right) return std::nullopt;
   auto const& segment = lane.path.segments()[foot.segment];
-  if (segment.ux * std::cos(pose.heading) + segment.uy * std::sin(pose.heading) <= 0.0) return std::nullopt;
+  if (segment.ux * portable::cos(pose.heading) + segment.uy * portable::sin(pose.heading) <= 0.0) return std::nullopt;
   return LaneHit{lane.id, foot.s, foot.lateral, 0.0, foot.segment};
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
 namespace cambium::map::detail {
@@ -42,7 +43,7 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
       x = next_x;
       y = next_y;
     }
-    double const length = std::hypot(x, y), ux = (first.ux * x - first.uy * y) / length,
+    double const length = portable::hypot(x, y), ux = (first.ux * x - first.uy * y) / length,
                  uy = (first.uy * x + first.ux * y) / length;
     double const from = first.s, to = segments[j].s + segments[j].length;
     auto const pieces = std::max(1.0, std::ceil(length / longest));

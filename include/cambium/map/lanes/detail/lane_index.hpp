@@ -9,6 +9,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/box_tree.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -111,7 +112,7 @@ class LaneIndex {
     if (along > g.length && !is_last) {
       // Either the next stretch has the foot point, or it is the vertex between them.
       if ((p.x() - next.x) * next.ux + (p.y() - next.y) * next.uy >= 0.0) return false;
-      lateral = std::copysign(std::hypot(lateral, along - g.length), lateral);
+      lateral = std::copysign(portable::hypot(lateral, along - g.length), lateral);
       along = g.length;
     }
     double const u = std::clamp(along / g.length, 0.0, 1.0);
@@ -119,7 +120,7 @@ class LaneIndex {
     double const right = g.begin.right + u * (g.end.right - g.begin.right);
     double const aside = std::max({lateral - left, -right - lateral, 0.0});
     double const past = std::max({-along, along - g.length, 0.0});
-    hit = {g.lane, g.s + along, lateral, past == 0.0 ? aside : std::hypot(aside, past), g.segment};
+    hit = {g.lane, g.s + along, lateral, past == 0.0 ? aside : portable::hypot(aside, past), g.segment};
     return true;
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanes/detail/lane_chords.hpp"
@@ -23,7 +24,7 @@ class OverlapEnds {
   /// Lets the stretches begin and end where one lane is as far from the other as the clearance. False where the exact
   /// paths do not come so near.
   [[nodiscard]] bool refine(Lane const& a, PathStretch& on_a, Lane const& b, PathStretch& on_b) const {
-    bool const same_way = std::cos(a.path.pose(on_a.middle()).heading - b.path.pose(on_b.middle()).heading) > 0.0;
+    bool const same_way = portable::cos(a.path.pose(on_a.middle()).heading - b.path.pose(on_b.middle()).heading) > 0.0;
     PathStretch const near_b = same_way ? on_b : PathStretch{on_b.end, on_b.begin},
                       near_a = same_way ? on_a : PathStretch{on_a.end, on_a.begin};
     auto const a_begin = refined(a, on_a.begin, on_a.end, b, near_b.begin),
@@ -72,11 +73,12 @@ class OverlapEnds {
     double s = std::clamp(lane.path.project(p, lane.path.find(near)).s, 0.0, lane.length());
     for (int i = 0;; ++i) {
       auto const q = at(lane, s);
-      double const dx = p.x() - q.x, dy = p.y() - q.y, ux = std::cos(q.heading), uy = std::sin(q.heading);
+      double const dx = p.x() - q.x, dy = p.y() - q.y, ux = portable::cos(q.heading), uy = portable::sin(q.heading);
       // On the inner side of a bend the foot point moves faster than the point.
       double const speed = std::max(0.1, 1.0 - lane.path.curvature(s) * (ux * dy - uy * dx));
       double const next = std::clamp(s + (dx * ux + dy * uy) / speed, 0.0, lane.length());
-      if (std::abs(next - s) < 1e-3 || i == 20) return {next, std::hypot(dx, dy)};  // off by a ten thousandth of that
+      if (std::abs(next - s) < 1e-3 || i == 20)
+        return {next, portable::hypot(dx, dy)};  // off by a ten thousandth of that
       s = next;
     }
   }
@@ -99,8 +101,9 @@ class OverlapEnds {
     // Outwards in growing steps, for the end is mostly near; inwards in even ones, to find what is left.
     constexpr int pieces = 16;
     for (int i = 1;; ++i) {
-      double const step = goes_out ? std::min(0.05 * std::exp2(i - 1) / std::max(std::abs(limit - end), 1e-9), 1.0)
-                                   : static_cast<double>(i) / pieces;
+      double const step = goes_out
+                              ? std::min(0.05 * std::ldexp(1.0, i - 1) / std::max(std::abs(limit - end), 1e-9), 1.0)
+                              : static_cast<double>(i) / pieces;
       bracket.to = step < 1.0 ? end + step * (limit - end) : limit;
       bracket.to_excess = excess(bracket.to);
       if ((bracket.to_excess < 0.0) != goes_out) return on_path(a, root(bracket, excess));
@@ -142,12 +145,12 @@ class OverlapEnds {
   /// of `b`; the same for lanes side by side.
   [[nodiscard]] PathStretch beside(geometry::Pose const& end, Lane const& b, double near) const {
     double const foot_point = foot(end.position(), b, near).s;
-    double const ux = std::cos(end.heading), uy = std::sin(end.heading);
+    double const ux = portable::cos(end.heading), uy = portable::sin(end.heading);
     double other = foot_point;
     for (int i = 0; i < 8; ++i) {
       auto const pose = at(b, other);
       double const ahead = (pose.x - end.x) * ux + (pose.y - end.y) * uy;
-      double const step = ahead / std::max(0.5, std::cos(end.heading - pose.heading));
+      double const step = ahead / std::max(0.5, portable::cos(end.heading - pose.heading));
       other = std::clamp(other - step, 0.0, b.length());
       if (std::abs(step) < 1e-3) break;
     }

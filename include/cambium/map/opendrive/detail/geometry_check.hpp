@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/opendrive/document.hpp"
@@ -88,7 +89,7 @@ class GeometryCheck {
     CurvePoint const end = evaluate(before, before.length);
     CurvePoint const start =
         next.kind == GeometryKind::cubic ? evaluate(next, 0.0) : CurvePoint{next.x, next.y, next.heading};
-    double const gap = std::hypot(start.x - end.x, start.y - end.y);
+    double const gap = portable::hypot(start.x - end.x, start.y - end.y);
     double const turn = std::abs(geometry::angle_difference(start.heading, end.heading));
     if (gap <= noticeable && turn <= noticeable) return gap;
     std::string const sentence =

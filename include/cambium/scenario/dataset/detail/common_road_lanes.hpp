@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/lanes/signal_codes.hpp"
@@ -349,7 +350,7 @@ class CommonRoadLanes : protected CommonRoadSignals {
     auto const& line = lanelet.left;
     if (line.size() < 2) return map::Arrow::straight;
     auto const heading = [](geometry::Point const& a, geometry::Point const& b) {
-      return std::atan2(b.y() - a.y(), b.x() - a.x());
+      return portable::atan2(b.y() - a.y(), b.x() - a.x());
     };
     return map::arrow_of_turn(
         geometry::angle_difference(heading(line[line.size() - 2], line.back()), heading(line[0], line[1])));

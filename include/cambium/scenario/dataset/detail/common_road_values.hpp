@@ -13,6 +13,7 @@
 
 #include <pugixml.hpp>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -140,7 +141,7 @@ class CommonRoadValues {
     if (!length || !width || !(*length > 0.0 && *width > 0.0)) return std::nullopt;
     CommonRoadShape shape{center(node), 0.0, *length, *width, {}, true};
     if (xml::find_child(node, "orientation")) shape.heading = number(node, "orientation").value_or(0.0);
-    double const c = std::cos(shape.heading), s = std::sin(shape.heading);
+    double const c = portable::cos(shape.heading), s = portable::sin(shape.heading);
     for (auto const& [a, b] : {std::pair{0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}}) {
       double const x = a * *length, y = b * *width;
       shape.outline.push_back(rounded({shape.center.x() + c * x - s * y, shape.center.y() + s * x + c * y}));
@@ -155,8 +156,8 @@ class CommonRoadValues {
     constexpr int corners = 32;
     for (int k = 0; k < corners; ++k) {
       double const angle = 2.0 * geometry::pi * k / corners;
-      shape.outline.push_back(
-          rounded({shape.center.x() + *radius * std::cos(angle), shape.center.y() + *radius * std::sin(angle)}));
+      shape.outline.push_back(rounded(
+          {shape.center.x() + *radius * portable::cos(angle), shape.center.y() + *radius * portable::sin(angle)}));
     }
     return shape;
   }

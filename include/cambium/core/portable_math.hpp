@@ -1,0 +1,277 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+
+/// Elementary functions of additions, multiplications, divisions and square roots alone, which IEEE 754 rounds
+/// correctly: the same bits with any standard library and any compiler that does not contract them into fused
+/// operations. Worlds step by these. Relative errors in units of 2.2e-16, angles in radians.
+namespace cambium::portable {
+
+namespace detail {
+
+inline constexpr double infinite = std::numeric_limits<double>::infinity();
+inline constexpr double pi = 3.14159265358979323846, two_pi = 2.0 * pi;
+inline constexpr double two_pi_rest = 2.4492935982947064e-16;  // 2 pi beyond `two_pi`
+
+/// c[0] + c[1] x + c[2] x^2 + ... by Estrin's scheme (1960): evaluates in pairs, so that few operations depend on each
+/// other.
+template <std::size_t n>
+[[nodiscard]] constexpr double polynomial(double x, std::array<double, n> const& c) {
+  if constexpr (n == 1) {
+    return c[0];
+  } else {
+    return [&]<std::size_t... i>(std::index_sequence<i...>) {
+      std::array<double, (n + 1) / 2> pairs{(c[2 * i] + c[2 * i + 1] * x)...};
+      if constexpr (n % 2 != 0) pairs.back() = c.back();
+      return polynomial(x * x, pairs);
+    }
+    (std::make_index_sequence<n / 2>{});
+  }
+}
+
+/// The same with the coefficients as arguments.
+template <class... Rest>
+[[nodiscard]] constexpr double polynomial(double x, double c, Rest... rest) {
+  return polynomial(x, std::array{c, rest...});
+}
+
+/// An angle split into the nearest number of quarter turns and the rest, in [-pi/4, pi/4] up to rounding.
+struct QuarterTurns {
+  double rest;
+  std::int64_t count;
+};
+
+/// Splits `x`, |x| <= 1e5, into quarter turns and rest. pi/2 is held in parts of 33 bits, so that their products with
+/// the count are exact (Cody, Waite 1980).
+[[nodiscard]] inline QuarterTurns reduce_by_quarter_turns(double x) {
+  constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
+  constexpr double part_1 = 0x1.921fb544p+0, part_2 = 0x1.0b4611a6p-34, part_3 = 0x1.3198a2e037073p-69;
+  constexpr double shifter = 0x1.8p52;  // adding it rounds to the nearest integer, which appears in the low bits
+  double const shifted = x * two_over_pi + shifter;
+  double const count = shifted - shifter;
+  auto const bits = std::bit_cast<std::int64_t>(shifted) - std::bit_cast<std::int64_t>(shifter);
+  return {((x - count * part_1) - count * part_2) - count * part_3, bits};
+}
+
+/// c + d x + e x^2 + ... by Horner's rule with fused multiply-add.
+template <class... Rest>
+[[nodiscard]] inline double fused_polynomial(double x, double c, Rest... rest) {
+  if constexpr (sizeof...(rest) == 0) {
+    return c;
+  } else {
+    return std::fma(fused_polynomial(x, rest...), x, c);
+  }
+}
+
+/// `exp` that no compiler contracts; error below 2, or one subnormal step.
+/// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
+[[nodiscard]] inline double fused_exp(double x) {
+  constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
+  if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN
+  if (x > 710.0) return infinite;
+  double const k = std::floor(std::fma(x, 0x1.71547652b82fep+0, 0.5));
+  double const r = std::fma(-k, ln2_low, std::fma(-k, ln2_high, x));
+  double const series =
+      fused_polynomial(r, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
+                       1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
+  double const exp_r = 1.0 + std::fma(r * r, series, r);
+  auto const power_of_2 = [](std::int64_t n) { return std::bit_cast<double>((n + 1023) << 52); };
+  auto const exponent = static_cast<std::int64_t>(k), half = exponent / 2;  // two factors: 2^k may be subnormal
+  return exp_r * power_of_2(half) * power_of_2(exponent - half);
+}
+
+/// x^n with O(log n) multiplications.
+[[nodiscard]] constexpr double integer_power(double x, unsigned n) {
+  double result = 1.0;
+  for (; n > 0; n /= 2, x *= x)
+    if (n % 2 == 1) result *= x;
+  return result;
+}
+
+/// e^r - 1 for |r| <= 0.35: Taylor's series; the first omitted term is below 1e-17 of the result.
+[[nodiscard]] inline double exp_minus_one_small(double r) {
+  double const tail =
+      polynomial(r, std::array{1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
+                               1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800, 1.0 / 87178291200});
+  return r + r * r * tail;
+}
+
+/// x 2^k, exact unless the result is subnormal or overflows.
+[[nodiscard]] inline double scaled(double x, int k) {
+  auto const power = [](int n) { return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52); };
+  if (k > 1023) return x * power(1023) * power(k - 1023 > 1023 ? 1023 : k - 1023);
+  if (k < -1022) return x * power(-969) * power(k + 969 < -1022 ? -1022 : k + 969);
+  return x * power(k);
+}
+
+}  // namespace detail
+
+/// Sine and cosine of one angle, see `sin_cos`.
+struct SinCos {
+  double sin, cos;
+};
+
+/// Like `sin_cos`, but for |x| <= pi/4 only, without branches and library calls.
+[[nodiscard]] inline SinCos sin_cos_small(double x) {
+  // Taylor series; the first omitted term is below 5e-17 on [-pi/4, pi/4].
+  double const q = x * x;
+  double const sine_series = detail::polynomial(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
+                                                1.0 / 6227020800, -1.0 / 1307674368000);
+  double const cosine_series = detail::polynomial(q, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
+                                                  -1.0 / 87178291200, 1.0 / 20922789888000);
+  return {x + x * (q * sine_series), 1.0 - (0.5 * q - q * q * cosine_series)};
+}
+
+/// Up to this angle [rad], shorter series suffice.
+inline constexpr double slight_angle = 0.125;
+
+/// Like `sin_cos`, but for |x| <= `slight_angle` only.
+[[nodiscard]] inline SinCos sin_cos_slight(double x) {
+  double const q = x * x;
+  double const sine_series = detail::polynomial(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880);
+  double const cosine_series = detail::polynomial(q, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800);
+  return {x + x * (q * sine_series), 1.0 - (0.5 * q - q * q * cosine_series)};
+}
+
+/// Tangent for |x| <= `slight_angle` only. The first omitted term is below 1e-17 of the result.
+[[nodiscard]] inline double tan_slight(double x) {
+  double const q = x * x;
+  return x + x * (q * detail::polynomial(q, 1.0 / 3, 2.0 / 15, 17.0 / 315, 62.0 / 2835, 1382.0 / 155925,
+                                         21844.0 / 6081075, 929569.0 / 638512875));
+}
+
+/// Like `sin_cos`, but for |x| <= 1e5 only, without branches and library calls, so that compilers vectorise loops over
+/// it.
+[[nodiscard]] inline SinCos sin_cos_bounded(double x) {
+  auto const [rest, count] = detail::reduce_by_quarter_turns(x);
+  auto const [sine, cosine] = sin_cos_small(rest);
+  // Quarter turn 1 maps (sin, cos) to (cos, -sin), 2 to (-sin, -cos), 3 to (-cos, sin). Done with bit masks, because a
+  // branch on the quadrant would be hard to predict.
+  auto const sine_bits = std::bit_cast<std::uint64_t>(sine), cosine_bits = std::bit_cast<std::uint64_t>(cosine);
+  auto const turns = static_cast<std::uint64_t>(count);
+  std::uint64_t const swapped = (sine_bits ^ cosine_bits) & (0 - (turns & 1));
+  std::uint64_t const sign_of_sin = (turns & 2) << 62, sign_of_cos = ((turns + 1) & 2) << 62;
+  return {std::bit_cast<double>(sine_bits ^ swapped ^ sign_of_sin),
+          std::bit_cast<double>(cosine_bits ^ swapped ^ sign_of_cos)};
+}
+
+/// Sine and cosine, with an absolute error below 2.5e-16 for |x| <= 1e5, and 3e-16 up to 1e15. Inline, without a call
+/// for |x| <= 1e5. NaN if `x` is not finite.
+[[nodiscard]] inline SinCos sin_cos(double x) {
+  if (std::abs(x) <= 1e5) [[likely]] {
+    return sin_cos_bounded(x);
+  }
+  double const rest = std::remainder(x, detail::two_pi), turns = (x - rest) / detail::two_pi;  // exact: IEEE 754
+  double const corrected = rest - turns * detail::two_pi_rest;
+  return std::abs(corrected) <= 1e5 ? sin_cos_bounded(corrected) : SinCos{corrected - corrected, corrected - corrected};
+}
+
+/// `sin_cos` of an angle that is usually slight, such as a heading error.
+[[nodiscard]] inline SinCos sin_cos_often_slight(double x) {
+  return std::abs(x) <= slight_angle ? sin_cos_slight(x) : sin_cos(x);
+}
+
+[[nodiscard]] inline double sin(double x) { return sin_cos(x).sin; }
+[[nodiscard]] inline double cos(double x) { return sin_cos(x).cos; }
+[[nodiscard]] inline double tan(double x) {
+  if (std::abs(x) <= slight_angle) return tan_slight(x);
+  auto const at = sin_cos(x);
+  return at.sin / at.cos;
+}
+
+/// Arc tangent; error below 3. Short for |x| <= 1/8, which is the usual case in steering.
+[[nodiscard]] inline double atan(double x) {
+  constexpr double half_pi = 0.5 * detail::pi;
+  // atan(c) for c = 0, 1/4, 1/2, 3/4, 1
+  static constexpr double known[] = {0.0, 0.24497866312686415417, 0.46364760900080611621, 0.64350110879328438680,
+                                     0.78539816339744830962};
+  auto const series = [](double t) {  // for |t| <= 1/8
+    double const q = t * t;
+    return t * (1.0 - q * detail::polynomial(q, 1.0 / 3, -1.0 / 5, 1.0 / 7, -1.0 / 9, 1.0 / 11, -1.0 / 13, 1.0 / 15));
+  };
+  double const a = std::abs(x);
+  if (a <= 0.125) [[likely]] {
+    return series(x);
+  }
+  if (a != a) return x;
+  bool const is_steep = a > 1.0;
+  double const v = is_steep ? 1.0 / a : a;
+  int const i = static_cast<int>(4.0 * v + 0.5);
+  double const c = 0.25 * i, angle = known[i] + series((v - c) / (1.0 + v * c));
+  return std::copysign(is_steep ? half_pi - angle : angle, x);
+}
+
+/// The angle of (x, y), in [-pi, pi]; error below 4.
+[[nodiscard]] inline double atan2(double y, double x) {
+  if (x != x || y != y) return x + y;
+  if (y == 0.0) return std::signbit(x) ? std::copysign(detail::pi, y) : y;
+  if (x == 0.0) return std::copysign(0.5 * detail::pi, y);
+  if (std::abs(x) == detail::infinite && std::abs(y) == detail::infinite)
+    return std::copysign(x > 0.0 ? 0.25 * detail::pi : 0.75 * detail::pi, y);
+  double const angle = atan(std::abs(y / x));
+  return std::copysign(x < 0.0 ? detail::pi - angle : angle, y);
+}
+
+/// Error below 1.
+[[nodiscard]] inline double exp(double x) {
+  if (!(x > -746.0)) return x != x ? x : 0.0;
+  if (!(x < 710.0)) return x != x ? x : detail::infinite;
+  constexpr double ln2_high = 0x1.62e42feep-1, ln2_low = 0x1.a39ef35793c76p-33;  // Cody, Waite 1980
+  constexpr double inverse_ln2 = 0x1.71547652b82fep+0, shifter = 0x1.8p52;
+  double const shifted = x * inverse_ln2 + shifter, k = shifted - shifter;
+  double const r = (x - k * ln2_high) - k * ln2_low;
+  return detail::scaled(1.0 + detail::exp_minus_one_small(r), static_cast<int>(k));
+}
+
+/// Natural logarithm of a positive normal number; error below 2. Method: x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m
+/// = 2 artanh(f), f = (m - 1) / (m + 1), as a power series.
+[[nodiscard]] inline double log(double x) {
+  constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // 45 bits: exact times any exponent
+  constexpr double ln2_low = 0x1.ef35793c76730p-45;
+  constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdu;
+  std::uint64_t const shifted = std::bit_cast<std::uint64_t>(x) - sqrt_half;
+  double const exponent = static_cast<double>(static_cast<std::int64_t>(shifted) >> 52);
+  double const m = std::bit_cast<double>((shifted & 0x000fffffffffffffu) + sqrt_half);
+  double const f = (m - 1.0) / (m + 1.0);
+  double const square = f * f;
+  double const twice = 2.0 * f;
+  double const series = detail::fused_polynomial(square, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13,
+                                                 1.0 / 15, 1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23);
+  double const log_m = std::fma(twice * square, series, twice);
+  return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
+}
+
+/// x^y for normal x > 0. For y in [0, 4096), the integer part of y is computed by
+/// multiplication.
+[[nodiscard]] inline double pow(double x, double y) {
+  if (!(y >= 0.0 && y < 4096.0)) return detail::fused_exp(y * log(x));
+  auto const whole = static_cast<unsigned>(y);
+  double const rest = y - whole;
+  return detail::integer_power(x, whole) * (rest > 0.0 ? detail::fused_exp(rest * log(x)) : 1.0);
+}
+
+/// Error below 4.
+[[nodiscard]] inline double tanh(double x) {
+  double const a = std::abs(x);
+  if (!(a < 20.0)) return x != x ? x : std::copysign(1.0, x);
+  double const e = 2.0 * a <= 0.34 ? detail::exp_minus_one_small(2.0 * a) : exp(2.0 * a) - 1.0;
+  return std::copysign(e / (e + 2.0), x);
+}
+
+/// Error below 1; no intermediate overflow or underflow.
+[[nodiscard]] inline double hypot(double x, double y) {
+  double const a = std::abs(x), b = std::abs(y), large = a < b ? b : a, small = a < b ? a : b;
+  if (large == detail::infinite) return large;
+  if (large < 1e150 && large > 1e-140) return std::sqrt(large * large + small * small);
+  if (large == 0.0 || large != large || small != small) return large + small;
+  double const ratio = small / large;
+  return large * std::sqrt(1.0 + ratio * ratio);
+}
+
+}  // namespace cambium::portable
