@@ -4,6 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <type_traits>
 
 #include <doctest/doctest.h>
 
@@ -89,9 +90,12 @@ TEST_CASE("the elementary functions are as accurate as they say") {
     for (double const bound : bounds) worst = std::max(worst, worst_of(f, exact, -bound, bound));
     return worst;
   };
-  CHECK(errors(portable::tan, [](long double x) { return std::tan(x); }, {0.125, 1.5}) < 5.0);
-  CHECK(errors(portable::atan, [](long double x) { return std::atan(x); }, {0.125, 1.0, 50.0, 1e9}) < 3.0);
-  CHECK(errors(portable::exp, [](long double x) { return std::exp(x); }, {1.0, 3.0, 700.0}) < 2.0);
+  CHECK(errors([](double x) { return portable::tan(x); }, [](long double x) { return std::tan(x); }, {0.125, 1.5}) <
+        5.0);
+  CHECK(errors([](double x) { return portable::atan(x); }, [](long double x) { return std::atan(x); },
+               {0.125, 1.0, 50.0, 1e9}) < 3.0);
+  CHECK(errors([](double x) { return portable::exp(x); }, [](long double x) { return std::exp(x); },
+               {1.0, 3.0, 700.0}) < 2.0);
   CHECK(errors(portable::detail::fused_exp, [](long double x) { return std::exp(x); }, {1.0, 3.0, 700.0}) < 2.0);
   CHECK(errors(portable::tanh, [](long double x) { return std::tanh(x); }, {0.1, 1.0, 25.0}) < 4.0);
   for (double const side : {3.0, -0.5, 0.0}) {
@@ -143,4 +147,16 @@ TEST_CASE("the elementary functions do as those of the standard library at the e
   CHECK(portable::exp(-745.0) == std::exp(-745.0));
   CHECK(portable::exp(709.7) == doctest::Approx(std::exp(709.7)).epsilon(1e-15));
   CHECK(portable::exp(710.0) == infinity);
+}
+
+TEST_CASE("floats give floats") {
+  static_assert(std::is_same_v<decltype(portable::sin(1.0f)), float>);
+  for (float const x : {0.1f, 1.0f, -2.5f}) {
+    CHECK(portable::sin(x) == doctest::Approx(std::sin(x)).epsilon(1e-7));
+    CHECK(portable::cos(x) == doctest::Approx(std::cos(x)).epsilon(1e-7));
+    CHECK(portable::tan(x) == doctest::Approx(std::tan(x)).epsilon(1e-6));
+    CHECK(portable::atan(x) == doctest::Approx(std::atan(x)).epsilon(1e-7));
+    CHECK(portable::exp(x) == doctest::Approx(std::exp(x)).epsilon(1e-7));
+    CHECK(portable::pow(x * x, 1.5f) == doctest::Approx(std::pow(x * x, 1.5f)).epsilon(1e-6));
+  }
 }

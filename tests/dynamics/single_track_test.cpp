@@ -11,6 +11,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/integration.hpp"
+#include "cambium/geometry/angle.hpp"
 
 #include "../support/dual.hpp"
 

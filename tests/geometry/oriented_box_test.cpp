@@ -4,6 +4,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
+#include "cambium/geometry/angle.hpp"
 
 using namespace cambium;
 using namespace cambium::geometry;

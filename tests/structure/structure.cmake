@@ -233,6 +233,21 @@ set_tests_properties(structure.wrong.harness_other_sentence PROPERTIES PASS_REGU
 add_wrong_program(harness_no_sentence ${structure_source}/harness/no_sentence.cpp)
 set_tests_properties(structure.wrong.harness_no_sentence PROPERTIES PASS_REGULAR_EXPRESSION "first line must be")
 
+# Traffic drives with the same bits, whatever the compiler, the processor and the standard library.
+left_to_all("structure.same_bits" "compiles the steps of seven drivers by five compilers, 6 minutes")
+if(NOT CAMBIUM_QUICK_TESTS)
+  get_target_property(eigen_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  set(same_bits_compilers ${CMAKE_CXX_COMPILER})
+  foreach(name g++ clang++-14 clang++-19)
+    if(CAMBIUM_CHECK_${name} AND NOT (name STREQUAL "g++" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"))
+      list(APPEND same_bits_compilers ${CAMBIUM_CHECK_${name}})
+    endif()
+  endforeach()
+  add_timed_test(structure.same_bits bash ${structure_source}/same_bits.sh ${structure_source}/same_bits.cpp
+    ${PROJECT_SOURCE_DIR}/include ${eigen_dir} ${structure_binary}/same_bits ${same_bits_compilers})
+  set_tests_properties(structure.same_bits PROPERTIES TIMEOUT 2400)
+endif()
+
 # A project that uses cambium, by add_subdirectory and by find_package.
 function(add_consumer name)
   add_timed_test(structure.consumer.${name} ${CMAKE_CTEST_COMMAND} --build-and-test ${structure_source}/consumer ${structure_binary}/consumer_${name}

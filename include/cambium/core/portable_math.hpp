@@ -274,4 +274,14 @@ inline constexpr double slight_angle = 0.125;
   return large * std::sqrt(1.0 + ratio * ratio);
 }
 
+// The same for floats, in models whose scalar is a template parameter.
+[[nodiscard]] inline float sin(float x) { return static_cast<float>(sin(static_cast<double>(x))); }
+[[nodiscard]] inline float cos(float x) { return static_cast<float>(cos(static_cast<double>(x))); }
+[[nodiscard]] inline float tan(float x) { return static_cast<float>(tan(static_cast<double>(x))); }
+[[nodiscard]] inline float atan(float x) { return static_cast<float>(atan(static_cast<double>(x))); }
+[[nodiscard]] inline float exp(float x) { return static_cast<float>(exp(static_cast<double>(x))); }
+[[nodiscard]] inline float pow(float x, float y) {
+  return static_cast<float>(pow(static_cast<double>(x), static_cast<double>(y)));
+}
+
 }  // namespace cambium::portable

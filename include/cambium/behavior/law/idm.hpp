@@ -82,7 +82,7 @@ template <class Scalar>
   if (exponent == 4.0) return (x * x) * (x * x);
   if (!(x > Scalar(0))) return Scalar(0);
   using portable::pow;
-  return Scalar(pow(x, Scalar(exponent)));
+  return pow(x, Scalar(exponent));
 }
 
 /// IDM's formula (Treiber, Hennecke, Helbing 2000, eq. 3 and 4) with all terms that depend on the parameters alone:

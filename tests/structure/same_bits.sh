@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# same_bits.sh SOURCE INCLUDE EIGEN FOLDER COMPILER...: passes when the program SOURCE prints the same from each compiler, for this
+# processor, without its fused operations, and with another C and C++ library (musl and libc++ of ziglang, from PyPI). INCLUDE has
+# cambium's headers, EIGEN Eigen's. What is not to be had here is left out, and said.
+set -euo pipefail
+source=$1 include=$2 eigen=$3 folder=$4
+shift 4
+mkdir -p "$folder"
+cd "$folder"
+rm -rf first.txt boost_alone && mkdir boost_alone # without the headers of this system's C library beside it
+options=(-std=c++20 -ffp-contract=off -DCAMBIUM_FLATTEN= "-I$include" -isystem "$eigen" "$source" -o program)
+
+# compare WHAT COMMAND...: whether the command prints what the first one printed.
+compare() {
+  local what=$1
+  shift
+  "$@" >printed.txt
+  if [[ ! -e first.txt ]]; then mv printed.txt first.txt; fi
+  if [[ -e printed.txt ]] && ! cmp -s first.txt printed.txt; then
+    echo "different: $what"
+    diff first.txt printed.txt | head -n 20 || true
+    exit 1
+  fi
+  echo "$what: $(cksum <first.txt)"
+}
+
+for compiler in "$@"; do
+  "$compiler" -O2 "${options[@]}"
+  compare "$compiler" ./program
+  if [[ $compiler == "$1" ]]; then
+    compare "$compiler, glibc without FMA and AVX2" \
+      env GLIBC_TUNABLES=glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-FMA_Usable,-FMA4_Usable,-AVX2_Usable ./program
+    "$compiler" -O3 -march=native "${options[@]}"
+    compare "$compiler -O3 -march=native" ./program
+  fi
+done
+
+boost=/usr/include/boost
+if [[ -d $boost ]] && { [[ -x python/bin/python ]] || python3 -m venv python; } &&
+  python/bin/python -m pip install -q --disable-pip-version-check ziglang; then
+  ln -s "$boost" boost_alone
+  python/bin/python -m ziglang c++ -target "$(uname -m)-linux-musl" -O2 -isystem boost_alone "${options[@]}"
+  compare "clang with musl and libc++" ./program
+else
+  echo "left out: musl and libc++, since ziglang or Boost is not to be had here"
+fi
