@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cambium/core/portable_math.hpp"
+
 #include "../world/fixtures.hpp"
 
 using namespace fixtures;
@@ -43,7 +45,7 @@ TEST_CASE("inputs beyond the vehicle's limits are reduced, and the action report
   cb::SingleTrack const model;
   auto const within_grip = [&] {
     double const v = world.state(id).speed;
-    return std::atan(model.lateral_acceleration_limit * model.wheel_base / (v * v));
+    return cb::portable::atan(model.lateral_acceleration_limit * model.wheel_base / (v * v));
   };
   double steering = -within_grip();
   world.memory<ExternalInput>(id) = {100.0, -3.0};
