@@ -9,9 +9,14 @@
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/geometry/polygon.hpp"
+#include "cambium/geometry/shape.hpp"
+#include "cambium/goal/goal.hpp"
+#include "cambium/map/map.hpp"
 #include "cambium/world/world.hpp"
 
 // Where traffic drives, as one hash for each model and map.

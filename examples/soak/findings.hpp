@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/portable_math.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/oriented_box.hpp"

@@ -37,7 +37,7 @@ TEST_CASE("whole turns are taken off without a loss") {
   }
   CHECK(worst < 2e-15);
   CHECK(normalize_angle(3.0 * pi) == doctest::Approx(pi));
-  CHECK(normalize_angle(1e15) == doctest::Approx(std::atan2(std::sin(1e15), std::cos(1e15))));
+  CHECK(std::abs(normalize_angle(1e15) - std::atan2(std::sin(1e15), std::cos(1e15))) < 1e-15);
   CHECK(std::isnan(normalize_angle(std::numeric_limits<double>::infinity())));
   CHECK(std::isnan(normalize_angle(std::numeric_limits<double>::quiet_NaN())));
 }

@@ -1,7 +1,6 @@
 // Prints a hash of where traffic drives, for each of several drivers, on a map with bends, a junction and a lane that
-// ends. It needs no library but the standard one, so that any compiler and any libm can run it: see same_bits.sh.
+// ends. It links no library but the standard one, so that any compiler and any libm can run it: see same_bits.sh.
 
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "cambium/behavior.hpp"
 #include "cambium/execution/stanley.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/road/curve_layout.hpp"
@@ -60,5 +60,5 @@ int main() {
     for (auto const& segment : lane.path.segments()) std::printf("%a %a %a\n", segment.x, segment.y, segment.heading);
   print<cb::UrbanDriver, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::HumanDriver<cb::Mobil>,
         cb::RssConformant<cb::IdmClassic>, cb::Pedestrian>(map);
-  std::printf("%s\n", yardstick::driven<cb::IdmLaneTracking, cb::StanleyExecution>("Stanley", map).c_str());
+  std::printf("%s\n", yardstick::driven<cb::IdmLaneTracking, cb::StanleyExecution>("crossing, Stanley", map).c_str());
 }

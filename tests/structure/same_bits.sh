@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # same_bits.sh SOURCE INCLUDE EIGEN FOLDER COMPILER...: passes when the program SOURCE prints the same from each compiler, for this
 # processor, without its fused operations, and with another C and C++ library (musl and libc++ of ziglang, from PyPI). INCLUDE has
-# cambium's headers, EIGEN Eigen's. What is not to be had here is left out, and said.
+# cambium's headers, EIGEN Eigen's. Says what it leaves out because it is missing here.
 set -euo pipefail
 source=$1 include=$2 eigen=$3 folder=$4
 shift 4
 mkdir -p "$folder"
 cd "$folder"
-rm -rf first.txt boost_alone && mkdir boost_alone # without the headers of this system's C library beside it
+rm -rf first.txt boost_alone
+mkdir boost_alone # without the headers of this system's C library beside it
+export ZIG_GLOBAL_CACHE_DIR=$PWD/zig_cache ZIG_LOCAL_CACHE_DIR=$PWD/zig_cache
 options=(-std=c++20 -ffp-contract=off -DCAMBIUM_FLATTEN= "-I$include" -isystem "$eigen" "$source" -o program)
 
 # compare WHAT COMMAND...: whether the command prints what the first one printed.
@@ -37,7 +39,7 @@ done
 
 boost=/usr/include/boost
 if [[ -d $boost ]] && { [[ -x python/bin/python ]] || python3 -m venv python; } &&
-  python/bin/python -m pip install -q --disable-pip-version-check ziglang; then
+  python/bin/python -m pip install -q --disable-pip-version-check ziglang==0.17.1; then
   ln -s "$boost" boost_alone
   python/bin/python -m ziglang c++ -target "$(uname -m)-linux-musl" -O2 -isystem boost_alone "${options[@]}"
   compare "clang with musl and libc++" ./program

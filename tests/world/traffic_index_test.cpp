@@ -667,3 +667,31 @@ TEST_CASE("a vehicle that only reaches over into a merging lane does not count a
   REQUIRE(ramp_view.ahead());
   CHECK(ramp_view.ahead()->agent == beside);  // whom those behind it in the ramp's lane follow
 }
+
+TEST_CASE("the agents around a place are in its lane corridor, not in lanes whose coordinates follow") {
+  auto const map = own_map("intersection_4way.xodr");
+  cb::World<cb::BehaviorSet<cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack> world(map);
+  for (auto const& lane : map->lanes())
+    for (double s = 8.0; lane.drivable() && s < lane.length(); s += 30.0) {
+      auto const pose = lane.path.pose(s);
+      world.add({.position = pose.position(), .heading = pose.heading, .speed = 5.0});
+    }
+  int found = 0;
+  for (auto const& agent : world.roster().agents) {
+    auto const view = world.observe(agent.id);
+    for (auto const& [left, number] : {std::pair{false, view.place().corridor},
+                                       std::pair{true, view.corridor().pieces[view.place().piece].beside(true)}}) {
+      if (number == cb::none<cb::CorridorId>) continue;
+      auto const& corridor = view.road().corridors[number];
+      view.around(view.place(number), 80.0, [&](cb::RoadUser const& other) {
+        double const index = world.record(other.agent).lane.index;
+        for (auto const& feeder : corridor.feeders)
+          if (index >= feeder.index_begin && index <= feeder.index_end) return;
+        auto const there = corridor.center.pose(other.s).position();
+        CHECK(std::hypot(view.state(other).x - there.x(), view.state(other).y - there.y()) < 4.0);
+        ++found;
+      });
+    }
+  }
+  CHECK(found > 200);
+}

@@ -18,7 +18,6 @@ inline constexpr double car_wheel_base = 2.7;
 inline constexpr double same_time = 1e-9;
 
 /// Bounds of comfort of nuPlan's metrics, from human drivers [m/s^2] (Karnchanachari et al. 2024).
-inline constexpr double comfort_deceleration = 4.05, comfort_acceleration = 2.4,
-                        comfort_lateral_acceleration = 4.89;
+inline constexpr double comfort_deceleration = 4.05, comfort_acceleration = 2.4, comfort_lateral_acceleration = 4.89;
 
 }  // namespace cambium

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -15,8 +14,8 @@
 #include "cambium/core/portable_math.hpp"
 
 // The same stream gives the same bits on every platform with IEEE doubles (no -ffast-math). Two rules make this so:
-//   - The code uses only +, -, *, /, sqrt and fma, which are correctly rounded everywhere, and the functions of
-//     portable_math.hpp that do so, too.
+//   - The code uses only +, -, *, /, sqrt and fma, which are correctly rounded everywhere, and `log`, `pow` and
+//     `fused_exp` of portable_math.hpp, which keep these rules, too.
 //   - No product feeds an addition outside std::fma, so compilers find nothing to contract into fused operations.
 //
 // Draws never throw. To check parameters, call `check_parameters(distribution)` once, outside the step path; it throws
@@ -55,24 +54,20 @@ namespace detail {
 
 /// The tails of `normal_quantile`: near (probabilities down to about 1e-11) and far.
 [[nodiscard]] inline double normal_quantile_near(double r) {
-  return portable::detail::fused_polynomial(r, 1.42343711074968357734e0, 4.63033784615654529590e0,
-                                            5.76949722146069140550e0, 3.64784832476320460504e0,
-                                            1.27045825245236838258e0, 2.41780725177450611770e-1,
-                                            2.27238449892691845833e-2, 7.74545014278341407640e-4) /
-         portable::detail::fused_polynomial(r, 1.0, 2.05319162663775882187e0, 1.67638483018380384940e0,
-                                            6.89767334985100004550e-1, 1.48103976427480074590e-1,
-                                            1.51986665636164571966e-2, 5.47593808499534494600e-4,
-                                            1.05075007164441684324e-9);
+  return portable::fused_polynomial(r, 1.42343711074968357734e0, 4.63033784615654529590e0, 5.76949722146069140550e0,
+                                    3.64784832476320460504e0, 1.27045825245236838258e0, 2.41780725177450611770e-1,
+                                    2.27238449892691845833e-2, 7.74545014278341407640e-4) /
+         portable::fused_polynomial(r, 1.0, 2.05319162663775882187e0, 1.67638483018380384940e0,
+                                    6.89767334985100004550e-1, 1.48103976427480074590e-1, 1.51986665636164571966e-2,
+                                    5.47593808499534494600e-4, 1.05075007164441684324e-9);
 }
 [[nodiscard]] inline double normal_quantile_far(double r) {
-  return portable::detail::fused_polynomial(r, 6.65790464350110377720e0, 5.46378491116411436990e0,
-                                            1.78482653991729133580e0, 2.96560571828504891230e-1,
-                                            2.65321895265761230930e-2, 1.24266094738807843860e-3,
-                                            2.71155556874348757815e-5, 2.01033439929228813265e-7) /
-         portable::detail::fused_polynomial(r, 1.0, 5.99832206555887937690e-1, 1.36929880922735805310e-1,
-                                            1.48753612908506148525e-2, 7.86869131145613259100e-4,
-                                            1.84631831751005468180e-5, 1.42151175831644588870e-7,
-                                            2.04426310338993978564e-15);
+  return portable::fused_polynomial(r, 6.65790464350110377720e0, 5.46378491116411436990e0, 1.78482653991729133580e0,
+                                    2.96560571828504891230e-1, 2.65321895265761230930e-2, 1.24266094738807843860e-3,
+                                    2.71155556874348757815e-5, 2.01033439929228813265e-7) /
+         portable::fused_polynomial(r, 1.0, 5.99832206555887937690e-1, 1.36929880922735805310e-1,
+                                    1.48753612908506148525e-2, 7.86869131145613259100e-4, 1.84631831751005468180e-5,
+                                    1.42151175831644588870e-7, 2.04426310338993978564e-15);
 }
 
 /// Quantile (inverse distribution function) of the standard normal distribution for p in (0, 1), relative error 1e-16
@@ -81,13 +76,12 @@ namespace detail {
   double const q = p - 0.5;
   if (std::abs(q) <= 0.425) {
     double const r = std::fma(-q, q, 0.180625);
-    return q *
-           (portable::detail::fused_polynomial(
-                r, 3.3871328727963666080e0, 1.3314166789178437745e2, 1.9715909503065514427e3, 1.3731693765509461125e4,
-                4.5921953931549871457e4, 6.7265770927008700853e4, 3.3430575583588128105e4, 2.5090809287301226727e3) /
-            portable::detail::fused_polynomial(
-                r, 1.0, 4.2313330701600911252e1, 6.8718700749205790830e2, 5.3941960214247511077e3,
-                2.1213794301586595867e4, 3.9307895800092710610e4, 2.8729085735721942674e4, 5.2264952788528545610e3));
+    return q * (portable::fused_polynomial(r, 3.3871328727963666080e0, 1.3314166789178437745e2, 1.9715909503065514427e3,
+                                           1.3731693765509461125e4, 4.5921953931549871457e4, 6.7265770927008700853e4,
+                                           3.3430575583588128105e4, 2.5090809287301226727e3) /
+                portable::fused_polynomial(r, 1.0, 4.2313330701600911252e1, 6.8718700749205790830e2,
+                                           5.3941960214247511077e3, 2.1213794301586595867e4, 3.9307895800092710610e4,
+                                           2.8729085735721942674e4, 5.2264952788528545610e3));
   }
   double const r = std::sqrt(-portable::log(q < 0.0 ? p : 1.0 - p));
   double const magnitude = r <= 5.0 ? normal_quantile_near(r - 1.6) : normal_quantile_far(r - 5.0);

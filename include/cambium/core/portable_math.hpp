@@ -3,14 +3,19 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <utility>
 
-/// Elementary functions of additions, multiplications, divisions and square roots alone, which IEEE 754 rounds
-/// correctly: the same bits with any standard library and any compiler that does not contract them into fused
-/// operations. Worlds step by these. Relative errors in units of 2.2e-16, angles in radians.
+/// Elementary functions of operations alone that IEEE 754 rounds correctly (additions, multiplications, divisions,
+/// roots, remainders, explicit fused operations): the same bits with any standard library and any compiler that does
+/// not contract multiplications and additions by itself. Maps are built and worlds step by these. Errors are relative,
+/// in units in the last place; angles are in radians.
+///
+/// Random numbers take only `log`, `pow` and `fused_exp`, of explicit fused operations, in which there is nothing to
+/// contract: they are the same even then. `exp` is faster where the compiler calls a function for a fused operation.
 namespace cambium::portable {
 
 namespace detail {
@@ -59,41 +64,6 @@ struct QuarterTurns {
   return {((x - count * part_1) - count * part_2) - count * part_3, bits};
 }
 
-/// c + d x + e x^2 + ... by Horner's rule with fused multiply-add.
-template <class... Rest>
-[[nodiscard]] inline double fused_polynomial(double x, double c, Rest... rest) {
-  if constexpr (sizeof...(rest) == 0) {
-    return c;
-  } else {
-    return std::fma(fused_polynomial(x, rest...), x, c);
-  }
-}
-
-/// `exp` that no compiler contracts; error below 2, or one subnormal step.
-/// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
-[[nodiscard]] inline double fused_exp(double x) {
-  constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
-  if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN
-  if (x > 710.0) return infinite;
-  double const k = std::floor(std::fma(x, 0x1.71547652b82fep+0, 0.5));
-  double const r = std::fma(-k, ln2_low, std::fma(-k, ln2_high, x));
-  double const series =
-      fused_polynomial(r, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
-                       1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
-  double const exp_r = 1.0 + std::fma(r * r, series, r);
-  auto const power_of_2 = [](std::int64_t n) { return std::bit_cast<double>((n + 1023) << 52); };
-  auto const exponent = static_cast<std::int64_t>(k), half = exponent / 2;  // two factors: 2^k may be subnormal
-  return exp_r * power_of_2(half) * power_of_2(exponent - half);
-}
-
-/// x^n with O(log n) multiplications.
-[[nodiscard]] constexpr double integer_power(double x, unsigned n) {
-  double result = 1.0;
-  for (; n > 0; n /= 2, x *= x)
-    if (n % 2 == 1) result *= x;
-  return result;
-}
-
 /// e^r - 1 for |r| <= 0.35: Taylor's series; the first omitted term is below 1e-17 of the result.
 [[nodiscard]] inline double exp_minus_one_small(double r) {
   double const tail =
@@ -102,12 +72,11 @@ template <class... Rest>
   return r + r * r * tail;
 }
 
-/// x 2^k, exact unless the result is subnormal or overflows.
+/// x 2^k for |k| <= 1100, exact unless the result is subnormal or overflows.
 [[nodiscard]] inline double scaled(double x, int k) {
   auto const power = [](int n) { return std::bit_cast<double>(static_cast<std::uint64_t>(n + 1023) << 52); };
-  if (k > 1023) return x * power(1023) * power(k - 1023 > 1023 ? 1023 : k - 1023);
-  if (k < -1022) return x * power(-969) * power(k + 969 < -1022 ? -1022 : k + 969);
-  return x * power(k);
+  int const half = k / 2;
+  return x * power(half) * power(k - half);
 }
 
 }  // namespace detail
@@ -161,15 +130,14 @@ inline constexpr double slight_angle = 0.125;
           std::bit_cast<double>(cosine_bits ^ swapped ^ sign_of_cos)};
 }
 
-/// Sine and cosine, with an absolute error below 2.5e-16 for |x| <= 1e5, and 3e-16 up to 1e15. Inline, without a call
-/// for |x| <= 1e5. NaN if `x` is not finite.
+/// Sine and cosine, with an absolute error below 2.5e-16 for |x| <= 1e5, and 3e-16 up to 1e15; beyond, of the remainder
+/// by twice the rounded pi. Inline, without a call for |x| <= 1e5. NaN if `x` is not finite.
 [[nodiscard]] inline SinCos sin_cos(double x) {
   if (std::abs(x) <= 1e5) [[likely]] {
     return sin_cos_bounded(x);
   }
-  double const rest = std::remainder(x, detail::two_pi), turns = (x - rest) / detail::two_pi;  // exact: IEEE 754
-  double const corrected = rest - turns * detail::two_pi_rest;
-  return std::abs(corrected) <= 1e5 ? sin_cos_bounded(corrected) : SinCos{corrected - corrected, corrected - corrected};
+  double const rest = std::remainder(x, detail::two_pi), turns = (x - rest) / detail::two_pi;
+  return sin_cos_bounded(std::abs(x) <= 1e15 ? rest - turns * detail::two_pi_rest : rest);
 }
 
 /// `sin_cos` of an angle that is usually slight, such as a heading error.
@@ -177,8 +145,11 @@ inline constexpr double slight_angle = 0.125;
   return std::abs(x) <= slight_angle ? sin_cos_slight(x) : sin_cos(x);
 }
 
+/// See `sin_cos`.
 [[nodiscard]] inline double sin(double x) { return sin_cos(x).sin; }
+/// See `sin_cos`.
 [[nodiscard]] inline double cos(double x) { return sin_cos(x).cos; }
+/// Error below 5.
 [[nodiscard]] inline double tan(double x) {
   if (std::abs(x) <= slight_angle) return tan_slight(x);
   auto const at = sin_cos(x);
@@ -229,9 +200,48 @@ inline constexpr double slight_angle = 0.125;
   return detail::scaled(1.0 + detail::exp_minus_one_small(r), static_cast<int>(k));
 }
 
-/// Natural logarithm of a positive normal number; error below 2. Method: x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m
-/// = 2 artanh(f), f = (m - 1) / (m + 1), as a power series.
+/// c + d x + e x^2 + ... by Horner's rule with fused multiply-add.
+template <class... Rest>
+[[nodiscard]] inline double fused_polynomial(double x, double c, Rest... rest) {
+  if constexpr (sizeof...(rest) == 0) {
+    return c;
+  } else {
+    return std::fma(fused_polynomial(x, rest...), x, c);
+  }
+}
+
+/// `exp` that no compiler contracts; error below 2, or one subnormal step.
+/// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
+[[nodiscard]] inline double fused_exp(double x) {
+  constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
+  if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN
+  if (x > 710.0) return detail::infinite;
+  double const k = std::floor(std::fma(x, 0x1.71547652b82fep+0, 0.5));
+  double const r = std::fma(-k, ln2_low, std::fma(-k, ln2_high, x));
+  double const series =
+      fused_polynomial(r, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
+                       1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
+  double const exp_r = 1.0 + std::fma(r * r, series, r);
+  auto const power_of_2 = [](std::int64_t n) { return std::bit_cast<double>((n + 1023) << 52); };
+  auto const exponent = static_cast<std::int64_t>(k), half = exponent / 2;  // two factors: 2^k may be subnormal
+  return exp_r * power_of_2(half) * power_of_2(exponent - half);
+}
+
+/// x^n with O(log n) multiplications.
+[[nodiscard]] constexpr double integer_power(double x, unsigned n) {
+  double result = 1.0;
+  for (; n > 0; n /= 2, x *= x)
+    if (n % 2 == 1) result *= x;
+  return result;
+}
+
+/// Natural logarithm; error below 2. Method: x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(f),
+/// f = (m - 1) / (m + 1), as a power series.
 [[nodiscard]] inline double log(double x) {
+  if (!(x >= std::numeric_limits<double>::min() && x < detail::infinite)) [[unlikely]] {
+    if (x > 0.0) return x < detail::infinite ? log(x * 0x1p54) - 54.0 * 0x1.62e42fefa39efp-1 : x;
+    return x == 0.0 ? -detail::infinite : std::numeric_limits<double>::quiet_NaN();
+  }
   constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // 45 bits: exact times any exponent
   constexpr double ln2_low = 0x1.ef35793c76730p-45;
   constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdu;
@@ -241,19 +251,22 @@ inline constexpr double slight_angle = 0.125;
   double const f = (m - 1.0) / (m + 1.0);
   double const square = f * f;
   double const twice = 2.0 * f;
-  double const series = detail::fused_polynomial(square, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13,
-                                                 1.0 / 15, 1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23);
+  double const series = fused_polynomial(square, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13, 1.0 / 15,
+                                         1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23);
   double const log_m = std::fma(twice * square, series, twice);
   return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
 }
 
-/// x^y for normal x > 0. For y in [0, 4096), the integer part of y is computed by
-/// multiplication.
+/// x^y for x >= 0, NaN below. For y in [0, 4096), the integer part of y is computed by multiplication. The error grows
+/// with |y|, and where y < 0 with |y ln x|; below 1e-13 for |y| <= 40 and x in [0.01, 100].
 [[nodiscard]] inline double pow(double x, double y) {
-  if (!(y >= 0.0 && y < 4096.0)) return detail::fused_exp(y * log(x));
+  if (y == 0.0 || x == 1.0) return 1.0;
+  if (!(x > 0.0))
+    return x != 0.0 || y != y ? std::numeric_limits<double>::quiet_NaN() : y > 0.0 ? 0.0 : detail::infinite;
+  if (!(y >= 0.0 && y < 4096.0)) return fused_exp(y * log(x));
   auto const whole = static_cast<unsigned>(y);
   double const rest = y - whole;
-  return detail::integer_power(x, whole) * (rest > 0.0 ? detail::fused_exp(rest * log(x)) : 1.0);
+  return integer_power(x, whole) * (rest > 0.0 ? fused_exp(rest * log(x)) : 1.0);
 }
 
 /// Error below 4.
@@ -264,7 +277,7 @@ inline constexpr double slight_angle = 0.125;
   return std::copysign(e / (e + 2.0), x);
 }
 
-/// Error below 1; no intermediate overflow or underflow.
+/// Error below 1.5; no intermediate overflow or underflow.
 [[nodiscard]] inline double hypot(double x, double y) {
   double const a = std::abs(x), b = std::abs(y), large = a < b ? b : a, small = a < b ? a : b;
   if (large == detail::infinite) return large;
@@ -275,13 +288,29 @@ inline constexpr double slight_angle = 0.125;
 }
 
 // The same for floats, in models whose scalar is a template parameter.
-[[nodiscard]] inline float sin(float x) { return static_cast<float>(sin(static_cast<double>(x))); }
-[[nodiscard]] inline float cos(float x) { return static_cast<float>(cos(static_cast<double>(x))); }
-[[nodiscard]] inline float tan(float x) { return static_cast<float>(tan(static_cast<double>(x))); }
-[[nodiscard]] inline float atan(float x) { return static_cast<float>(atan(static_cast<double>(x))); }
-[[nodiscard]] inline float exp(float x) { return static_cast<float>(exp(static_cast<double>(x))); }
-[[nodiscard]] inline float pow(float x, float y) {
-  return static_cast<float>(pow(static_cast<double>(x), static_cast<double>(y)));
+template <std::same_as<float> F>
+[[nodiscard]] F sin(F x) {
+  return static_cast<F>(sin(double{x}));
+}
+template <std::same_as<float> F>
+[[nodiscard]] F cos(F x) {
+  return static_cast<F>(cos(double{x}));
+}
+template <std::same_as<float> F>
+[[nodiscard]] F tan(F x) {
+  return static_cast<F>(tan(double{x}));
+}
+template <std::same_as<float> F>
+[[nodiscard]] F atan(F x) {
+  return static_cast<F>(atan(double{x}));
+}
+template <std::same_as<float> F>
+[[nodiscard]] F exp(F x) {
+  return static_cast<F>(exp(double{x}));
+}
+template <std::same_as<float> F>
+[[nodiscard]] F pow(F x, F y) {
+  return static_cast<F>(pow(double{x}, double{y}));
 }
 
 }  // namespace cambium::portable

@@ -83,13 +83,13 @@ struct Pose {
 
 /// Transforms `local` (x forward, y left, relative to `frame`) to the map frame.
 [[nodiscard]] inline Point to_map(Pose const& frame, Point const& local) {
-  double const c = portable::cos(frame.heading), s = portable::sin(frame.heading);
+  auto const [s, c] = portable::sin_cos(frame.heading);
   return {frame.x + c * local.x() - s * local.y(), frame.y + s * local.x() + c * local.y()};
 }
 
 /// Transforms the map point `p` to coordinates relative to `frame` (x forward, y left). Inverse of `to_map`.
 [[nodiscard]] inline Point to_local(Pose const& frame, Point const& p) {
-  double const c = portable::cos(frame.heading), s = portable::sin(frame.heading);
+  auto const [s, c] = portable::sin_cos(frame.heading);
   double const dx = p.x() - frame.x, dy = p.y() - frame.y;
   return {c * dx + s * dy, -s * dx + c * dy};
 }

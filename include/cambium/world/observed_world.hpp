@@ -434,7 +434,8 @@ class ObservedWorld {
     auto const& truth = record(slot).state;
     auto const& seen = observed(slot);
     double const along = truth.heading - record(slot).lane.heading_error;
-    return (seen.x - truth.x) * portable::cos(along) + (seen.y - truth.y) * portable::sin(along);
+    auto const [sin, cos] = portable::sin_cos(along);
+    return (seen.x - truth.x) * cos + (seen.y - truth.y) * sin;
   }
 
   [[nodiscard]] static geometry::Pose pose_of(State const& s) { return {s.x, s.y, s.heading}; }

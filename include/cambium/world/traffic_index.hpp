@@ -273,11 +273,10 @@ class TrafficIndex {
     auto const* piece = &corridor.pieces[query.piece];
     auto const* const last = sign > 0 ? &corridor.pieces.back() : &corridor.pieces.front();
     for (Walk<sign> walk{agents(), start};; walk = Walk<sign>::into(agents(), *piece)) {
-      while (walk && query.skips(*walk, false, sign * (walk->position - piece->index_offset - query.s)))
-        ++walk;  // the searching agent's own entry in another lane
-      if (walk && walk.is_within(*piece)) {
-        double const s = walk->position - piece->index_offset;
-        if (sign * (s - query.s) <= query.distance) best.offer(*walk, s, gap_to<sign>(s, walk.reach_back(), query));
+      for (; walk && walk.is_within(*piece); ++walk) {
+        double const s = walk->position - piece->index_offset, way = sign * (s - query.s);
+        if (query.skips(*walk, false, way)) continue;  // such as the searching agent's own entry in another lane
+        if (way <= query.distance) best.offer(*walk, s, gap_to<sign>(s, walk.reach_back(), query));
         return;
       }
       if (piece == last) return;

@@ -108,7 +108,7 @@ struct KeepLane {
   /// The same for a driver that passes nobody within its lane.
   template <class View, class Limits>
   void heed_next(View const& view, Limits& limits) const {
-    if (limits.merging != Merging::ignored && !view.corridor().feeders.empty()) [[unlikely]]
+    if (!view.corridor().feeders.empty()) [[unlikely]]
       limits.heed(strictest_merging(view, limits));
     else if (auto const next = view.ahead({.merging = limits.merging}))
       limits.heed(detail::constraint_of<typename Limits::Response>(view, *next));

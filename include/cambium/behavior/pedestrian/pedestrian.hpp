@@ -13,6 +13,7 @@
 #include "cambium/behavior/pedestrian/social_force.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/portable_math.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/polygon.hpp"

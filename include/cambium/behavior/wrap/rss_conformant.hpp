@@ -77,7 +77,7 @@ struct RssConformant {
     auto const& at = view.place();
     Step const step(within_steps(dt), std::max(0.0, view.state().speed), dt,
                     across(view, view.state(), view.shape(), at.segment), across(view, end, view.shape(), at.segment));
-    auto const& [now, then] = step.places;
+    auto const &now = step.now, &then = step.then;
     for_each_oncoming(step, view, [&](RoadUser const& other) {
       if (may_matter(step, view, other)) respond(step, view, other, at.segment, all);
     });
@@ -87,7 +87,7 @@ struct RssConformant {
       view.around(from, farthest, [&](RoadUser const& other) {
         if (!is_valid(other.agent)) {
           is_close = is_close || (other.s >= from.s && other.gap < step.same);
-        } else if (is_near(step, other, other.s >= from.s)) {
+        } else if (is_near(step, other, other.s >= from.s) && may_matter(step, view, other)) {
           respond(step, view, other, view.corridor().center.find(at.s + (other.s - from.s)), all);
         }
       });
@@ -121,19 +121,18 @@ struct RssConformant {
 
   /// What the responses of one step to all road users have in common.
   struct Step {
-    Step(RssParameters const& assumed, double own_speed, double seconds, Across const& now, Across const& then)
+    Step(RssParameters const& assumed, double own_speed, double seconds, Across const& begin, Across const& end)
         : p(assumed),
           speed(own_speed),
           dt(seconds),
-          places{now, then},
+          now(begin),
+          then(end),
           same(rss_same_direction(p, speed, 0.0)),
           opposite(rss_opposite_direction(p, speed, speed)) {}
 
     RssParameters p;
-    double speed, dt;  ///< [m/s], [s]
-    struct {
-      Across now, then;
-    } places;               ///< the own one, and where it plans to be at the end
+    double speed, dt;       ///< [m/s], [s]
+    Across now, then;       ///< of the own vehicle, and where it plans to be at the end
     double same, opposite;  ///< safe distances from those in its direction, and from those that come at its speed [m]
   };
 
@@ -203,14 +202,14 @@ struct RssConformant {
     return lets;
   }
 
-  /// False for an agent of a lane in the own direction that is too far away to matter, `is_ahead` or behind. Distances
-  /// along that lane may be longer than along the own one, on the outside of a bend.
+  /// False for an agent of a lane beside, or of one that merges, that is too far away along it to matter, `is_ahead` or
+  /// behind. That distance may be longer than the one along the own lane, on the outside of a bend.
   [[nodiscard]] static bool is_near(Step const& step, RoadUser const& other, bool is_ahead) {
-    constexpr double share = 1.2, apart = 5.0;  // [-], [m]
-    auto const& p = step.p;
-    double const speed = std::abs(other.speed), gap = (other.gap - apart) * (1.0 / share);
-    if (other.speed < 0.0) return gap <= rss_opposite_direction(p, std::max(step.speed, speed), speed);
-    return gap <= (is_ahead ? rss_same_direction(p, step.speed, speed) : rss_same_direction(p, speed, step.speed));
+    constexpr double share = 1.2, apart = 15.0;  // [-], [m]
+    double const fast = std::abs(other.speed), gap = (other.gap - apart) * (1.0 / share);
+    if (gap <= (is_ahead || fast <= step.speed ? step.same : rss_same_direction(step.p, fast, 0.0))) return true;
+    if (other.speed >= 0.0) return false;
+    return gap <= (fast <= step.speed ? step.opposite : rss_opposite_direction(step.p, fast, fast));
   }
 
   /// False for a road user too far away to matter, whatever it does.
@@ -224,8 +223,7 @@ struct RssConformant {
     double const apart = dx * dx + dy * dy;
     if (apart <= same * same) return true;
     double const opposite = (fast > step.speed ? rss_opposite_direction(p, fast, fast) : step.opposite) + sizes;
-    return apart <= opposite * opposite &&
-           !(state.speed >= 0.0 && portable::sin_cos(state.heading - own.heading).cos > 0.2);
+    return apart <= opposite * opposite && !(state.speed >= 0.0 && portable::cos(state.heading - own.heading) > 0.2);
   }
   /// At least the radius of a shape [m], without a root.
   [[nodiscard]] static double half_girth(geometry::Shape const& shape) {
@@ -283,7 +281,7 @@ struct RssConformant {
   template <class View>
   static void respond(Step const& step, View const& view, RoadUser const& other, std::uint32_t hint, RssResponse& all) {
     auto const& p = step.p;
-    auto const& [now, then] = step.places;
+    auto const &now = step.now, &then = step.then;
     auto const its = across(view, view.state(other), view.shape(other), hint);
     RssSituation at{.speed = now.along, .other_speed = its.along, .other_lateral_speed = its.aside};
     if (its.along < 0.0) {

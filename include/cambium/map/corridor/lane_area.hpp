@@ -55,7 +55,8 @@ class StripPolygons {
   /// Grows the ring by a cross-section where it stays simple; true also where there is nothing to add.
   bool append(StripSection const& section) {
     constexpr double shortest = 1e-4;  // [m] between a side's vertices
-    double const sin = portable::sin(section.heading), cos = portable::cos(section.heading);
+    auto const direction = portable::sin_cos(section.heading);
+    double const sin = direction.sin, cos = direction.cos;
     auto const advances = [&](Point const& from, Point const& to) {
       return (to.x() - from.x()) * cos + (to.y() - from.y()) * sin > shortest;
     };
@@ -117,7 +118,8 @@ class StripPolygons {
   constexpr double least = 1e-3;
   double const middle = 0.5 * (sides.left - sides.right);
   double const half = std::max(0.5 * (sides.left + sides.right) + growth, least);
-  double const sin = portable::sin(on_line.heading), cos = portable::cos(on_line.heading);
+  auto const direction = portable::sin_cos(on_line.heading);
+  double const sin = direction.sin, cos = direction.cos;
   auto const at = [&](double t) { return geometry::Point(on_line.x - t * sin, on_line.y + t * cos); };
   return {at(middle + half), at(middle - half), on_line.heading};
 }

@@ -78,7 +78,8 @@ class LaneTree {
   /// within `radius` [m] whose direction is less than a quarter turn off. Nothing if there is none. O(log n), no
   /// allocation.
   [[nodiscard]] std::optional<LaneHit> nearest_drivable(geometry::Pose const& pose, double radius) const {
-    double const c = portable::cos(pose.heading), s = portable::sin(pose.heading);
+    auto const own = portable::sin_cos(pose.heading);
+    double const s = own.sin, c = own.cos;
     if (!std::isfinite(c)) return std::nullopt;  // a heading that is none fits no lane
     Best holding, nearest;
     drivable_.visit(pose.position(), 0.0, [&](LaneHit const& hit, geometry::Point const& d) {
@@ -117,7 +118,8 @@ class LaneTree {
   /// What `near` finds for a radius of `reach`, of any number.
   [[nodiscard]] std::vector<LaneHit> within(geometry::Point const& p, double reach, LaneQuery const& query) const {
     std::vector<LaneHit> hits;
-    geometry::Point const ahead{portable::cos(query.heading.value_or(0.0)), portable::sin(query.heading.value_or(0.0))};
+    auto const [sin, cos] = portable::sin_cos(query.heading.value_or(0.0));
+    geometry::Point const ahead{cos, sin};
     double const least = query.heading ? portable::cos(std::min(query.heading_tolerance, geometry::pi)) : -2.0;
     auto const collect = [&](LaneHit const& hit, geometry::Point const& d) {
       if (hit.distance <= reach && d.dot(ahead) >= least) hits.push_back(hit);

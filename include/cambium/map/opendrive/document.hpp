@@ -204,8 +204,7 @@ struct Document {
 [[nodiscard]] inline Geometry with_offset(Geometry g, HeaderOffset const& offset) {
   double const x = g.x + offset.x;
   double const y = g.y + offset.y;
-  double const c = portable::cos(offset.heading);
-  double const s = portable::sin(offset.heading);
+  auto const [s, c] = portable::sin_cos(offset.heading);
   g.x = offset.heading == 0.0 ? x : c * x - s * y;
   g.y = offset.heading == 0.0 ? y : s * x + c * y;
   g.heading += offset.heading;

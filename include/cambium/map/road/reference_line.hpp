@@ -96,7 +96,7 @@ namespace detail {
 [[nodiscard]] inline CurvePoint evaluate_cubic(Geometry const& g, double ds) {
   double const stretch = g.cubic->length() / g.length;
   auto const local = g.cubic->at(ds * stretch);
-  double const cos = portable::cos(g.heading), sin = portable::sin(g.heading);
+  auto const [sin, cos] = portable::sin_cos(g.heading);
   return {g.x + cos * local.x - sin * local.y, g.y + sin * local.x + cos * local.y,
           g.heading + g.cubic->start_direction() + local.heading, local.curvature, local.curvature_derivative};
 }

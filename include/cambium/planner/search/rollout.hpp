@@ -143,7 +143,7 @@ struct TruncatedRollout {
                   "`double value(State const&, std::size_t agent)`");
     int const steps = std::min(run.steps, base.steps);
     if (base.roll_out(run)) return true;
-    double const weight = portable::detail::integer_power(run.discount, static_cast<unsigned>(steps));
+    double const weight = portable::integer_power(run.discount, static_cast<unsigned>(steps));
     for (std::size_t k = 0; k < run.joint.size(); ++k) run.returns[k] += weight * run.domain.value(run.state, k);
     return false;
   }

@@ -74,7 +74,8 @@ namespace cambium::map::detail {
   auto const widths = lane.widths_at(foot.s, foot.segment);
   if (foot.lateral > widths.left || foot.lateral < -widths.right) return std::nullopt;
   auto const& segment = lane.path.segments()[foot.segment];
-  if (segment.ux * portable::cos(pose.heading) + segment.uy * portable::sin(pose.heading) <= 0.0) return std::nullopt;
+  auto const [sin, cos] = portable::sin_cos(pose.heading);
+  if (segment.ux * cos + segment.uy * sin <= 0.0) return std::nullopt;
   return LaneHit{lane.id, foot.s, foot.lateral, 0.0, foot.segment};
 }
 

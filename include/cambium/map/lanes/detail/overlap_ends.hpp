@@ -73,7 +73,8 @@ class OverlapEnds {
     double s = std::clamp(lane.path.project(p, lane.path.find(near)).s, 0.0, lane.length());
     for (int i = 0;; ++i) {
       auto const q = at(lane, s);
-      double const dx = p.x() - q.x, dy = p.y() - q.y, ux = portable::cos(q.heading), uy = portable::sin(q.heading);
+      double const dx = p.x() - q.x, dy = p.y() - q.y;
+      auto const [uy, ux] = portable::sin_cos(q.heading);
       // On the inner side of a bend the foot point moves faster than the point.
       double const speed = std::max(0.1, 1.0 - lane.path.curvature(s) * (ux * dy - uy * dx));
       double const next = std::clamp(s + (dx * ux + dy * uy) / speed, 0.0, lane.length());
@@ -145,7 +146,7 @@ class OverlapEnds {
   /// of `b`; the same for lanes side by side.
   [[nodiscard]] PathStretch beside(geometry::Pose const& end, Lane const& b, double near) const {
     double const foot_point = foot(end.position(), b, near).s;
-    double const ux = portable::cos(end.heading), uy = portable::sin(end.heading);
+    auto const [uy, ux] = portable::sin_cos(end.heading);
     double other = foot_point;
     for (int i = 0; i < 8; ++i) {
       auto const pose = at(b, other);
