@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <initializer_list>
 #include <memory>
 #include <string>
@@ -123,4 +124,34 @@ TEST_CASE_TEMPLATE("drivers for town change lanes and give way, whatever their l
     any_changes = any_changes || changes;
   }
   CHECK(any_changes);
+}
+
+namespace {
+struct Anywhere {
+  std::uint16_t corridor = 0;
+  static constexpr char const* name = "anywhere";
+  static constexpr auto parameters() {
+    return cambium::parameter_list(
+        cambium::parameter("corridor", &Anywhere::corridor, "-", cambium::Range{0, 1000}, "its target"));
+  }
+  template <class Choice>
+  cambium::CorridorId operator()(Choice const&) const {
+    return cambium::CorridorId{corridor};
+  }
+};
+}  // namespace
+
+TEST_CASE("a lane rule that names a corridor which is not beside changes no lane") {
+  using Changer = cambium::Driver<cambium::Idm, cambium::ChangeLanes<Anywhere>>;
+  for (auto const corridor : {std::uint16_t{3}, std::uint16_t{77}}) {
+    cambium::World<cambium::BehaviorSet<Changer>, cambium::InterpolateExecution, cambium::SingleTrack> world(
+        support::own_map("highway.xodr"));
+    Changer driver;
+    driver.lateral.rule.corridor = corridor;
+    auto const id = world.add({.position = {20.0, -8.75}, .speed = 12.0, .behavior = driver});
+    auto const lane = world.record(id).lane;
+    for (int step = 0; step < 50; ++step) REQUIRE(world.step(0.2));
+    CHECK(world.record(id).lane.corridor == lane.corridor);
+    CHECK(std::abs(world.record(id).lane.lateral) < 0.01);
+  }
 }

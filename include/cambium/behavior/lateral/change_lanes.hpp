@@ -53,7 +53,8 @@ struct LaneChoice {
 
 /// Keeps its lane, and changes lanes where a rule such as `MobilRule` says so: a described struct with
 ///   `template <class Choice> CorridorId operator()(Choice const& choice) const`
-/// that returns the lane corridor to change to, or none, for a `LaneChoice`. It is not called during a change. This
+/// that returns the lane corridor beside to change to, or none, for a `LaneChoice`; another corridor counts as none.
+/// Whether the change is safe is up to the rule (`LaneChoice::is_safe`). It is not called during a change. This
 /// part knows what the driver assumes of others, which gaps are safe, how the vehicle gets there and when it gives up.
 ///
 ///    ======================================================  lane beyond
@@ -157,7 +158,7 @@ struct ChangeLanes {
       bool const is_passing = memory.lane.aside != 0 && !keep.keep_to_side && end == infinite;
       bool const may_change = memory.rest == 0.0f && !is_passing;
       auto const target = rule(LaneChoice<View, Limits, ChangeLanes>{view, limits, leader, end, may_change, *this});
-      if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
+      if (may_change && is_beside(view, target) && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
         auto const change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
         if (!(limits.gives_way && enters_crossing(view, change))) {
           memory.change = change;
@@ -233,6 +234,13 @@ struct ChangeLanes {
   }
 
  private:
+  template <class View>
+  [[nodiscard]] static bool is_beside(View const& view, CorridorId target) {
+    if (target == none<CorridorId>) return false;
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    return target == piece.left || target == piece.right;
+  }
+
   /// Whether the driver may pass slower road users within its lane: not where other lanes merge in, because their
   /// traffic counts as a whole. Merges beyond the corridor's end do not matter.
   template <class View>
