@@ -68,8 +68,8 @@ struct QuarterTurns {
 /// e^r - 1 for |r| <= 0.35: Taylor's series; the first omitted term is below 1e-17 of the result.
 [[nodiscard]] inline double exp_minus_one_small(double r) {
   double const tail =
-      polynomial(r, std::array{1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
-                               1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800, 1.0 / 87178291200});
+      polynomial(r, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
+                 1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800, 1.0 / 87178291200);
   return r + r * r * tail;
 }
 
@@ -238,9 +238,7 @@ template <class... Rest>
       fused_polynomial(r, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
                        1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
   double const exp_r = 1.0 + std::fma(r * r, series, r);
-  auto const power_of_2 = [](std::int64_t n) { return std::bit_cast<double>((n + 1023) << 52); };
-  auto const exponent = static_cast<std::int64_t>(k), half = exponent / 2;  // two factors: 2^k may be subnormal
-  return exp_r * power_of_2(half) * power_of_2(exponent - half);
+  return detail::scaled(exp_r, static_cast<int>(k));
 }
 
 /// x^n with O(log n) multiplications.

@@ -130,6 +130,12 @@ struct RssConformant {
           same(rss_same_direction(p, speed, 0.0)),
           opposite(rss_opposite_direction(p, speed, speed)) {}
 
+    /// The same from vehicles that may be faster, at `fast` [m/s].
+    [[nodiscard]] double same_at(double fast) const { return fast > speed ? rss_same_direction(p, fast, 0.0) : same; }
+    [[nodiscard]] double opposite_at(double fast) const {
+      return fast > speed ? rss_opposite_direction(p, fast, fast) : opposite;
+    }
+
     RssParameters p;
     double speed, dt;       ///< [m/s], [s]
     Across now, then;       ///< of the own vehicle, and where it plans to be at the end
@@ -207,22 +213,19 @@ struct RssConformant {
   [[nodiscard]] static bool is_near(Step const& step, RoadUser const& other, bool is_ahead) {
     constexpr double share = 1.2, apart = 15.0;  // [-], [m]
     double const fast = std::abs(other.speed), gap = (other.gap - apart) * (1.0 / share);
-    if (gap <= (is_ahead || fast <= step.speed ? step.same : rss_same_direction(step.p, fast, 0.0))) return true;
-    if (other.speed >= 0.0) return false;
-    return gap <= (fast <= step.speed ? step.opposite : rss_opposite_direction(step.p, fast, fast));
+    return gap <= (is_ahead ? step.same : step.same_at(fast)) || (other.speed < 0.0 && gap <= step.opposite_at(fast));
   }
 
   /// False for a road user too far away to matter, whatever it does.
   template <class View>
   [[nodiscard]] static bool may_matter(Step const& step, View const& view, RoadUser const& other) {
     auto const &own = view.state(), &state = view.state(other);
-    auto const& p = step.p;
     double const dx = state.x - own.x, dy = state.y - own.y, fast = std::abs(state.speed);
     double const sizes = 2.0 * (half_girth(view.shape()) + half_girth(view.shape(other)));
-    double const same = (fast > step.speed ? rss_same_direction(p, fast, 0.0) : step.same) + sizes;
+    double const same = step.same_at(fast) + sizes;
     double const apart = dx * dx + dy * dy;
     if (apart <= same * same) return true;
-    double const opposite = (fast > step.speed ? rss_opposite_direction(p, fast, fast) : step.opposite) + sizes;
+    double const opposite = step.opposite_at(fast) + sizes;
     return apart <= opposite * opposite && !(state.speed >= 0.0 && portable::cos(state.heading - own.heading) > 0.2);
   }
   /// At least the radius of a shape [m], without a root.
