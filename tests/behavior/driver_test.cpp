@@ -155,3 +155,69 @@ TEST_CASE("a lane rule that names a corridor which is not beside changes no lane
     CHECK(std::abs(world.record(id).lane.lateral) < 0.01);
   }
 }
+
+namespace {
+/// A law that sees no number for its leader, and a heed that desires what it is told.
+struct Undecided : Gipps {
+  static constexpr char const* name = "undecided";
+  [[nodiscard]] double acceleration(double v, double desired, cambium::Constraint const& leader) const {
+    return std::isinf(leader.gap) ? Gipps::acceleration(v, desired, leader) : std::nan("");
+  }
+};
+struct Wish {
+  double speed = 5.0;
+  static constexpr char const *name = "wish", *summary = "desires no more than this";
+  static constexpr auto parameters() { return cambium::parameter_list(); }
+  template <class Law, class View>
+  double desired_speed(Law const&, View const&, double) const {
+    return speed;
+  }
+};
+
+using Doubtful = cambium::Driver<Undecided, cambium::KeepLane, cambium::Pedestrians>;
+using Doubters = cambium::World<cambium::BehaviorSet<Doubtful, cambium::IdmClassic>, cambium::InterpolateExecution,
+                                cambium::SingleTrack>;
+}  // namespace
+
+TEST_CASE("what every law has is checked, though a law describes less") {
+  Doubters world(support::straight_road());
+  auto const nan = std::nan("");
+  for (auto const& [law, expected] :
+       {std::pair{Undecided{{.comfortable_deceleration = -1.0}},
+                  "law.comfortable_deceleration: is -1 m/s^2; give a value in (0, inf) m/s^2"},
+        std::pair{Undecided{{.maximum_acceleration = nan}}, "law.maximum_acceleration: is nan"},
+        std::pair{Undecided{{.lowest_acceleration = 0.0}}, "law.lowest_acceleration: is 0"}})
+    CHECK_THROWS_WITH_AS(world.add({.position = {20.0, -1.75}, .behavior = Doubtful{.law = law}}),
+                         doctest::Contains(expected), ParameterError);
+  CHECK(world.size() == 0);
+}
+
+TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; one that is no number is reported", Law, Idm, Acc, Gipps) {
+  using Wishful = Driver<Law, KeepLane, Wish>;
+  auto const drive = [](double desired, double& speed) {
+    World<BehaviorSet<Wishful>, InterpolateExecution, SingleTrack> world(support::straight_road());
+    auto const id = world.add({.position = {20.0, -1.75}, .speed = 2.0, .behavior = Wishful{}.with(Wish{desired})});
+    StepResult result;
+    for (int step = 0; step < 100 && result; ++step) result = world.step(0.2);
+    speed = world.state(id).speed;
+    return result.problem;
+  };
+  double speed = 0.0;
+  CHECK(drive(1.0, speed) == StepProblem::none);
+  CHECK(speed == doctest::Approx(1.0).epsilon(0.01));
+  for (double const desired : {-3.0, -1e300}) {
+    CHECK(drive(desired, speed) == StepProblem::none);
+    CHECK(speed <= 0.3);  // a law's scheme may overshoot such a speed
+  }
+  CHECK(drive(std::nan(""), speed) == StepProblem::not_finite);
+}
+
+TEST_CASE("a law whose acceleration is no number is reported by the step") {
+  Doubters world(support::straight_road());
+  auto const id = world.add({.position = {20.0, -1.75}, .speed = 2.0, .behavior = Doubtful{}});
+  REQUIRE(world.step(0.2));
+  world.add({.position = {60.0, -1.75}, .speed = 2.0, .behavior = IdmClassic{}});
+  auto const result = world.step(0.2);
+  CHECK(result.problem == StepProblem::not_finite);
+  CHECK(result.agent == id);
+}

@@ -54,7 +54,7 @@ static_assert(BehaviorModel<Intersection>);
 
 /// A driver for town: changes lanes for its route and for speed by MOBIL, obeys limits, slows down for bends, stops at
 /// lights and stop signs and for pedestrians, passes cyclists, and gives way at junctions. `Law`: how it follows.
-template <CarFollowingLaw Law = Idm>
+template <class Law = Idm>
 using BasicUrbanDriver = Driver<Law, ChangeLanes<MobilRule<>>, SpeedLimit, Bends, Signals, Pedestrians, Conflicts>;
 using UrbanDriver = BasicUrbanDriver<>;
 static_assert(BehaviorModel<UrbanDriver>);

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
+#include <string>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/driver/driver_text.hpp"
 #include "cambium/behavior/driver/heeding.hpp"
 #include "cambium/behavior/driver/limits.hpp"
 #include "cambium/core/described.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/core/parameters.hpp"
 
 namespace cambium {
 
@@ -20,6 +25,52 @@ template <class Lateral>
     return lateral.merging;
   else
     return Merging::counts;
+}
+
+/// The lateral part of a driver whose limits are `Limits`, see `Driver`.
+template <class L, class Limits>
+concept LateralPart = std::copyable<L> && Described<L> && std::copyable<MemoryOf<L>> &&
+    requires(L const lateral, ViewArchetype const view, MemoryOf<L> memory, Limits limits, double dt) {
+  {
+    lateral.drive(view, memory, lateral.look(view, memory, limits, dt), limits, dt)
+    } -> std::same_as<Plan<ViewArchetype>>;
+};
+
+/// Returns true; fails to compile with a sentence that says which part is none.
+template <class Law, class Lateral>
+[[nodiscard]] constexpr bool check_driver() {
+  static_assert(
+      CarFollowingLaw<Law>,
+      "cambium::Driver<Law, Lateral, Heeds...>: the law must be a described struct with desired_speed, time_headway, "
+      "minimum_gap, maximum_acceleration, comfortable_deceleration, lowest_acceleration and `double "
+      "acceleration(double "
+      "speed, double desired_speed, cambium::Constraint const& leader) const` (see CarFollowingLaw)");
+  if constexpr (CarFollowingLaw<Law>)
+    static_assert(
+        LateralPart<Lateral, Limits<Law>>,
+        "cambium::Driver<Law, Lateral, Heeds...>: the lateral part, after the law, must be a described struct "
+        "with look(view, memory, limits, dt) and drive(view, memory, seen, limits, dt), such as "
+        "cambium::KeepLane or cambium::ChangeLanes<Rule> (see Driver)");
+  return true;
+}
+
+/// Throws `ParameterError` if a parameter that every law has makes no sense: its description need not list it.
+template <CarFollowingLaw Law>
+CAMBIUM_COLD void check_law(Law const& law, std::string const& where) {
+  constexpr Range negative{-positive.high, -positive.low};
+  struct {
+    ParameterInfo info;
+    double value;
+  } const all[] = {{{"desired_speed", "m/s", positive, ""}, law.desired_speed},
+                   {{"time_headway", "s", non_negative, ""}, law.time_headway},
+                   {{"minimum_gap", "m", non_negative, ""}, law.minimum_gap},
+                   {{"maximum_acceleration", "m/s^2", positive, ""}, law.maximum_acceleration},
+                   {{"comfortable_deceleration", "m/s^2", positive, ""}, law.comfortable_deceleration},
+                   {{"lowest_acceleration", "m/s^2", negative, ""}, law.lowest_acceleration}};
+  for (auto const& [info, value] : all)
+    if (!(value >= info.range.low && value <= info.range.high))
+      throw ParameterError(where + ".law." + info.name, "is " + with_unit(number_text(value), info.unit),
+                           "give a value in " + with_unit(range_text(info), info.unit));
 }
 }  // namespace detail
 
@@ -37,8 +88,10 @@ template <class Lateral>
 ///   - `drive(view, memory, seen, limits, dt)`: the plan that drives `limits.within(limits.motion(dt))` there;
 ///   - `merging`, or a part `keep` with it: how road users count that merge into the lane, see `Merging`.
 /// - `Heeds`: see `Heeding`.
-template <CarFollowingLaw Law, class Lateral, class... Heeds>
+template <class Law, class Lateral, class... Heeds>
 struct Driver {
+  static_assert(detail::check_driver<Law, Lateral>() && detail::check_heeds<Heeds...>());
+
   Law law{};
   Lateral lateral{};
   [[no_unique_address]] Heeding<Heeds...> heeds{};
@@ -77,6 +130,8 @@ struct Driver {
                           parameter("lateral", &P::lateral, "where across the road it drives"),
                           parameter("heeds", &P::heeds, "what it heeds besides"));
   }
+
+  void check(std::string const& where) const { detail::check_law(law, where); }
 
   /// One of the heeds.
   template <class H>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
@@ -44,6 +45,35 @@ template <class T, class... Parts>
 template <class T, class... Parts>
 using FoundPart = std::tuple_element_t<place_of<T, Parts...>(), std::tuple<Parts...>>;
 
+/// How messages and files call a heed.
+template <class H>
+concept HeedText = std::copyable<H> && Described<H> && requires {
+  { H::name } -> std::convertible_to<std::string_view>;
+  { H::summary } -> std::convertible_to<char const*>;
+};
+
+/// Returns true; fails to compile with a sentence that says what is wrong with a driver's heeds.
+template <class... Heeds>
+[[nodiscard]] constexpr bool check_heeds() {
+  constexpr bool have_text = (HeedText<Heeds> && ...);
+  static_assert(
+      have_text,
+      "cambium::Driver<Law, Lateral, Heeds...>: each heed must be a copyable struct with `static constexpr char "
+      "const *name = ..., *summary = ...` and `static constexpr auto parameters()` (see Heeding)");
+  if constexpr (have_text) {
+    constexpr bool have_own_names = [] {
+      std::string_view const names[] = {Heeds::name..., {}};
+      for (std::size_t i = 0; i < sizeof...(Heeds); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+          if (names[i] == names[k]) return false;
+      return true;
+    }();
+    static_assert(have_own_names,
+                  "cambium::Driver<Law, Lateral, Heeds...>: name each heed once; two with one name would have one key");
+  }
+  return true;
+}
+
 /// The memory of a heed as a list of fields; none for a heed without one.
 template <class Owner, class Heed>
 [[nodiscard]] constexpr auto memory_parameter() {
@@ -60,10 +90,12 @@ template <class Owner, class Heed>
 /// and one of these functions:
 /// - `heed(view, limits, dt)`, or with a `Memory` of its own `heed(view, memory, limits, dt)`, adds to the
 ///   `Limits` of a step of `dt` [s];
-/// - `double desired_speed(law, view, speed)` lowers the driver's desired speed [m/s].
+/// - `double desired_speed(law, view, speed)` lowers the driver's desired speed [m/s], but not below 0.1 m/s.
 /// It may also have `Merging merging(view, merging)`, which changes how road users count that merge into the lane.
 template <class... Heeds>
 struct Heeding : detail::Slotted<Heeds>... {
+  static_assert(detail::check_heeds<Heeds...>());
+
   /// Whether `H`, or one derived from it, is among the heeds.
   template <class H>
   static constexpr bool contains = detail::place_of<H, Heeds...>() < sizeof...(Heeds);
@@ -97,14 +129,17 @@ struct Heeding : detail::Slotted<Heeds>... {
     return static_cast<detail::Slotted<detail::FoundPart<H, Heeds...>> const&>(*this).part;
   }
 
-  /// The desired speed of a driver with `law` at `speed` [m/s].
+  /// The desired speed of a driver with `law` at `speed` [m/s]; NaN if a heed's is, which the step then reports.
   template <class Law, class View>
   [[nodiscard]] double desired_speed(Law const& law, [[maybe_unused]] View const& view,
                                      [[maybe_unused]] double speed) const {
+    [[maybe_unused]] constexpr double lowest = 0.1;  // laws divide by it
     double desired = law.desired_speed;
     [[maybe_unused]] auto const lower = [&](auto const& heed) {
-      if constexpr (requires { heed.desired_speed(law, view, speed); })
-        desired = std::min(desired, heed.desired_speed(law, view, speed));
+      if constexpr (requires { heed.desired_speed(law, view, speed); }) {
+        double const lowered = heed.desired_speed(law, view, speed);
+        if (!(lowered >= desired)) desired = lowered < lowest ? lowest : lowered;
+      }
     };
     (lower(part<Heeds>()), ...);
     return desired;
@@ -138,7 +173,7 @@ struct Heeding : detail::Slotted<Heeds>... {
   void heed_one(View const& view, [[maybe_unused]] Memory& memory, Limits& limits, double dt) const {
     if constexpr (requires { part<H>().heed(view, limits, dt); })
       part<H>().heed(view, limits, dt);
-    else if constexpr (!std::is_same_v<MemoryOf<H>, NoMemory>)
+    else if constexpr (requires(MemoryOf<H> & own) { part<H>().heed(view, own, limits, dt); })
       part<H>().heed(view, static_cast<detail::HeedMemory<H>&>(memory).memory, limits, dt);
     else
       static_assert(

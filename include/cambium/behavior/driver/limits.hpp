@@ -16,8 +16,9 @@ namespace cambium {
 /// - the six that every driver has: desired speed [m/s], time headway [s], minimum gap [m], maximum acceleration and
 ///   comfortable deceleration (above 0), and lowest acceleration (below 0) [m/s^2];
 /// - `double acceleration(double speed, double desired_speed, Constraint const& leader) const` [m/s^2]: never higher
-///   than on a free road. The leader's gap is above 0, and infinite on a free road. `desired_speed` is the parameter,
-///   or lower where a speed limit is; a law that responds to it with a lag passes the sign too fast.
+///   than on a free road; below the lowest, it brakes with the lowest; NaN is driven, and the step reports it. The
+///   leader's gap is above 0, and infinite on a free road. `desired_speed` is the parameter, or lower where a speed
+///   limit is; a law that responds to it with a lag passes the sign too fast.
 ///
 /// A law may further have
 /// - `static constexpr bool asks_acceleration = true`, if it wants to know a leader's acceleration;
@@ -50,7 +51,8 @@ class AtSpeed {
   /// The same at another speed [m/s].
   [[nodiscard]] double operator()(double speed, Constraint const& leader) const {
     if (!(leader.gap > 0.0)) return law_->lowest_acceleration;
-    return std::max<double>(law_->lowest_acceleration, law_->acceleration(speed, desired_speed_, leader));
+    double const a = law_->acceleration(speed, desired_speed_, leader);
+    return a < law_->lowest_acceleration ? law_->lowest_acceleration : a;
   }
 
   [[nodiscard]] double speed() const { return speed_; }                  ///< [m/s]
@@ -98,7 +100,7 @@ class Limits {
   void heed(Constraint const& other) {
     if (constraint_.gap < infinite) {  // a single constraint needs no comparison
       double const a = response_(other);
-      if (!(a < acceleration() || (a == acceleration() && other.gap < constraint_.gap))) return;
+      if (a > acceleration() || (a == acceleration() && other.gap >= constraint_.gap)) return;  // a NaN stays
       acceleration_ = a;
     } else {
       acceleration_ = not_asked;  // that of the free road may have been asked for

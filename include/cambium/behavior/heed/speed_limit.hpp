@@ -24,7 +24,7 @@ struct SpeedLimit {
   [[nodiscard]] double desired_speed(Law const& law, View const& view, double speed) const {
     double const permitted =
         detail::permitted_speed(view.corridor(), view.place().s, speed, law.comfortable_deceleration);
-    return std::clamp<double>(factor * permitted, 0.1, law.desired_speed);
+    return factor * permitted;
   }
 };
 

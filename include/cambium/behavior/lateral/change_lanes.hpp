@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -50,6 +51,14 @@ struct LaneChoice {
     return limits.response()(front ? detail::constraint_beside<typename Limits::Response>(view, *front) : Constraint{});
   }
 };
+
+namespace detail {
+/// A rule of lane changes, see `ChangeLanes`.
+template <class R, class Choice>
+concept LaneRule = std::copyable<R> && Described<R> && requires(R const rule, Choice const& choice) {
+  { rule(choice) } -> std::same_as<CorridorId>;
+};
+}  // namespace detail
 
 /// Keeps its lane, and changes lanes where a rule such as `MobilRule` says so: a described struct with
 ///   `template <class Choice> CorridorId operator()(Choice const& choice) const`
@@ -138,6 +147,10 @@ struct ChangeLanes {
   /// lane that it must leave. Returns the leader in its lane.
   template <class View, class Limits>
   [[nodiscard]] std::optional<RoadUser> look(View const& view, Memory& memory, Limits& limits, double dt) const {
+    using Choice = LaneChoice<View, Limits, ChangeLanes>;
+    static_assert(detail::LaneRule<Rule, Choice>,
+                  "cambium::ChangeLanes<Rule>: the rule must be a described struct with `template <class Choice> "
+                  "cambium::CorridorId operator()(Choice const& choice) const` (see ChangeLanes)");
     double const speed = limits.response().speed();
     auto const leader = memory.change.active() ? view.ahead({.merging = limits.merging})
                                                : keep.next_in_way(view, limits, memory.lane, passes_in_lane(view));
@@ -157,7 +170,7 @@ struct ChangeLanes {
       double const end = lane_end(view, home, view.place().piece);
       bool const is_passing = memory.lane.aside != 0 && !keep.keep_to_side && end == infinite;
       bool const may_change = memory.rest == 0.0f && !is_passing;
-      auto const target = rule(LaneChoice<View, Limits, ChangeLanes>{view, limits, leader, end, may_change, *this});
+      auto const target = rule(Choice{view, limits, leader, end, may_change, *this});
       if (may_change && is_beside(view, target) && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
         auto const change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
         if (!(limits.gives_way && enters_crossing(view, change))) {

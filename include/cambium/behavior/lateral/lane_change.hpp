@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
@@ -107,6 +108,14 @@ struct LaneChangeCourse {
             "minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
             "however slow a car drives; 5 m more for each metre that a longer vehicle's front is farther ahead, 8 m "
             "where there is room"));
+  }
+
+  void check(std::string const& where) const {
+    if (duration < shortest_duration)
+      throw ParameterError(where + ".duration",
+                           "is " + detail::number_text(duration) + " s, less than shortest_duration, " +
+                               detail::number_text(shortest_duration) + " s",
+                           "lower both");
   }
 
   /// Shortest length of a change [m], however slow a vehicle of this shape drives.

@@ -196,7 +196,7 @@ class IdmStep {
     Scalar const closeness = terms_.closeness(dynamic, inverse_gap);
     auto const [free, free_slope] = free_road(speed * terms_.inverse_desired_speed);
     Scalar const wanted = terms_.maximum * ((Scalar(1) - free) - closeness * closeness);
-    if (!(gap > Scalar(0)) || !(wanted > terms_.low)) return {terms_.low, Scalar(0), true};
+    if (!(gap > Scalar(0)) || wanted <= terms_.low) return {terms_.low, Scalar(0), true};
     if (wanted >= terms_.high) return {terms_.high, Scalar(0), true};
     Scalar const dynamic_slope =
         interacts ? terms_.headway + (Scalar(2) * speed - leader_speed_) * terms_.closing : Scalar(0);
