@@ -192,6 +192,16 @@ TEST_CASE("what every law has is checked, though a law describes less") {
   CHECK(world.size() == 0);
 }
 
+TEST_CASE("a lane change may not last less than the shortest one") {
+  World<BehaviorSet<Mobil>, InterpolateExecution, SingleTrack> world(support::straight_road());
+  Mobil driver;
+  driver.lateral.course.duration = 2.0;
+  CHECK_THROWS_WITH_AS(
+      world.add({.position = {20.0, -1.75}, .behavior = driver}),
+      doctest::Contains("lateral.course.duration: is 2 s, less than shortest_duration, 2.5 s; lower both"),
+      ParameterError);
+}
+
 TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; one that is no number is reported", Law, Idm, Acc, Gipps) {
   using Wishful = Driver<Law, KeepLane, Wish>;
   auto const drive = [](double desired, double& speed) {
