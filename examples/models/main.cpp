@@ -66,6 +66,7 @@ std::vector<Model> planners() {
 
 std::vector<Model> parts() {
   return {model<cb::Idm>("Idm"),
+          model<cb::ImprovedIdm>("ImprovedIdm"),
           model<cb::Acc>("Acc"),
           model<cb::KeepLane>("KeepLane"),
           model<cb::TrackLine>("TrackLine"),

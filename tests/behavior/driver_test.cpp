@@ -202,7 +202,8 @@ TEST_CASE("a lane change may not last less than the shortest one") {
       ParameterError);
 }
 
-TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; one that is no number is reported", Law, Idm, Acc, Gipps) {
+TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; one that is no number is reported", Law, Idm, ImprovedIdm, Acc,
+                   Gipps) {
   using Wishful = Driver<Law, KeepLane, Wish>;
   auto const drive = [](double desired, double& speed) {
     World<BehaviorSet<Wishful>, InterpolateExecution, SingleTrack> world(support::straight_road());

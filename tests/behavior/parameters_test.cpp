@@ -11,8 +11,8 @@ TEST_CASE("defaults, units and ranges are those of the file beside") {
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection, cb::UrbanDriver, cb::RssConformant<cb::IdmClassic>,
       cb::HumanDriver<cb::IdmClassic>, cb::Pedestrian, cb::Safety, cb::ConstantAcceleration, cb::StaticTrajectory,
       cb::ExternalInput, cb::MotionPrimitives, cb::MacroActions, cb::RandomMacroActions,
-      cb::DriverActions<cb::Intersection>, cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal, cb::Idm, cb::Acc,
-      cb::LaneChangeCourse, cb::LaneEnd, cb::Yielding<>, cb::RssParameters, cb::MotionPrimitive, cb::MacroAction,
-      cb::SocialForceParameters, cb::CrossingParameters, cb::FreeSpace, cb::RemainingLength, cb::SpeedLimitAtLeast>(
-      "behavior");
+      cb::DriverActions<cb::Intersection>, cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal, cb::Idm,
+      cb::ImprovedIdm, cb::Acc, cb::LaneChangeCourse, cb::LaneEnd, cb::Yielding<>, cb::RssParameters,
+      cb::MotionPrimitive, cb::MacroAction, cb::SocialForceParameters, cb::CrossingParameters, cb::FreeSpace,
+      cb::RemainingLength, cb::SpeedLimitAtLeast>("behavior");
 }
