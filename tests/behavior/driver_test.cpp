@@ -25,32 +25,6 @@ using namespace cambium;
 
 namespace {
 
-/// Vehicles anywhere on the lanes of the map, some of them close together, one in five long, and two cyclists beside.
-template <class World, class Behavior>
-void fill(World& world, Behavior const& behavior, std::uint64_t seed) {
-  auto const& map = world.map();
-  std::vector<LaneId> lanes;
-  for (auto const& lane : map.lanes())
-    if (lane.drivable() && lane.length() > 12.0) lanes.push_back(lane.id);
-  RandomStream random(seed, 0, 0);
-  auto const any = [&] { return lanes[uniform_index(random, static_cast<std::uint32_t>(lanes.size()))]; };
-  auto cluster = any();
-  for (int i = 0; i < 60 && world.size() < 24; ++i) {
-    if (i % 4 == 0) cluster = any();
-    auto const& lane = map.lane(cluster);
-    auto pose = lane.path.pose(5.0 + uniform01(random) * (lane.length() - 10.0));
-    typename World::AgentSpec spec{
-        .position = pose.position(), .heading = pose.heading, .speed = 16.0 * uniform01(random), .behavior = behavior};
-    if (i % 5 == 4) spec.shape = geometry::truck();
-    if (i % 13 == 12) {
-      spec.shape = geometry::bicycle();
-      spec.speed *= 0.3;
-      spec.position = geometry::to_map(pose, {0.0, -1.2});
-    }
-    world.add(spec);
-  }
-}
-
 /// A queue in each lane that leads to the map; `behavior` makes one for each vehicle.
 template <class World, class Make>
 void fill_in_queues(World& world, Make const& behavior) {
@@ -120,7 +94,7 @@ TEST_CASE_TEMPLATE("drivers for town change lanes and give way, whatever their l
       }
     }
     CAPTURE(agents);
-    CHECK(left > agents / 2);  // the map
+    CHECK(left > agents / 2);  // have left the map
     any_changes = any_changes || changes;
   }
   CHECK(any_changes);
@@ -131,21 +105,19 @@ struct Anywhere {
   std::uint16_t corridor = 0;
   static constexpr char const* name = "anywhere";
   static constexpr auto parameters() {
-    return cambium::parameter_list(
-        cambium::parameter("corridor", &Anywhere::corridor, "-", cambium::Range{0, 1000}, "its target"));
+    return parameter_list(parameter("corridor", &Anywhere::corridor, "-", Range{0, 1000}, "its target"));
   }
   template <class Choice>
-  cambium::CorridorId operator()(Choice const&) const {
-    return cambium::CorridorId{corridor};
+  CorridorId operator()(Choice const&) const {
+    return CorridorId{corridor};
   }
 };
 }  // namespace
 
 TEST_CASE("a lane rule that names a corridor which is not beside changes no lane") {
-  using Changer = cambium::Driver<cambium::Idm, cambium::ChangeLanes<Anywhere>>;
+  using Changer = Driver<Idm, ChangeLanes<Anywhere>>;
   for (auto const corridor : {std::uint16_t{3}, std::uint16_t{77}}) {
-    cambium::World<cambium::BehaviorSet<Changer>, cambium::InterpolateExecution, cambium::SingleTrack> world(
-        support::own_map("highway.xodr"));
+    World<BehaviorSet<Changer>, InterpolateExecution, SingleTrack> world(support::own_map("highway.xodr"));
     Changer driver;
     driver.lateral.rule.corridor = corridor;
     auto const id = world.add({.position = {20.0, -8.75}, .speed = 12.0, .behavior = driver});
@@ -157,26 +129,25 @@ TEST_CASE("a lane rule that names a corridor which is not beside changes no lane
 }
 
 namespace {
-/// A law that sees no number for its leader, and a heed that desires what it is told.
+/// A law whose acceleration behind a leader is NaN, and a heed that desires what it is told.
 struct Undecided : Gipps {
   static constexpr char const* name = "undecided";
-  [[nodiscard]] double acceleration(double v, double desired, cambium::Constraint const& leader) const {
-    return std::isinf(leader.gap) ? Gipps::acceleration(v, desired, leader) : std::nan("");
+  [[nodiscard]] double acceleration(double v, double desired, Constraint const& leader) const {
+    return leader.gap > 100.0 ? Gipps::acceleration(v, desired, leader) : std::nan("");
   }
 };
 struct Wish {
   double speed = 5.0;
   static constexpr char const *name = "wish", *summary = "desires no more than this";
-  static constexpr auto parameters() { return cambium::parameter_list(); }
+  static constexpr auto parameters() { return parameter_list(); }
   template <class Law, class View>
   double desired_speed(Law const&, View const&, double) const {
     return speed;
   }
 };
 
-using Doubtful = cambium::Driver<Undecided, cambium::KeepLane, cambium::Pedestrians>;
-using Doubters = cambium::World<cambium::BehaviorSet<Doubtful, cambium::IdmClassic>, cambium::InterpolateExecution,
-                                cambium::SingleTrack>;
+using Doubtful = Driver<Undecided, KeepLane, Pedestrians>;
+using Doubters = World<BehaviorSet<Doubtful, IdmClassic>, InterpolateExecution, SingleTrack>;
 }  // namespace
 
 TEST_CASE("what every law has is checked, though a law describes less") {
@@ -186,7 +157,8 @@ TEST_CASE("what every law has is checked, though a law describes less") {
        {std::pair{Undecided{{.comfortable_deceleration = -1.0}},
                   "law.comfortable_deceleration: is -1 m/s^2; give a value in (0, inf) m/s^2"},
         std::pair{Undecided{{.maximum_acceleration = nan}}, "law.maximum_acceleration: is nan"},
-        std::pair{Undecided{{.lowest_acceleration = 0.0}}, "law.lowest_acceleration: is 0"}})
+        std::pair{Undecided{{.lowest_acceleration = 0.0}},
+                  "law.lowest_acceleration: is 0 m/s^2; give a value in (-inf, -0.01] m/s^2"}})
     CHECK_THROWS_WITH_AS(world.add({.position = {20.0, -1.75}, .behavior = Doubtful{.law = law}}),
                          doctest::Contains(expected), ParameterError);
   CHECK(world.size() == 0);
@@ -198,13 +170,13 @@ TEST_CASE("a lane change may not last less than the shortest one") {
   driver.lateral.course.duration = 2.0;
   CHECK_THROWS_WITH_AS(
       world.add({.position = {20.0, -1.75}, .behavior = driver}),
-      doctest::Contains("lateral.course.duration: is 2 s, less than shortest_duration, 2.5 s; lower both"),
+      doctest::Contains(
+          "lateral.course.duration: is 2 s, less than shortest_duration, 2.5 s; lower shortest_duration, too"),
       ParameterError);
 }
 
-TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; one that is no number is reported", Law, Idm, ImprovedIdm, Acc,
-                   Gipps) {
-  using Wishful = Driver<Law, KeepLane, Wish>;
+TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; NaN is reported", Law, Idm, ImprovedIdm, Acc, Gipps) {
+  using Wishful = Driver<Law, KeepLane, Wish, SpeedLimit>;
   auto const drive = [](double desired, double& speed) {
     World<BehaviorSet<Wishful>, InterpolateExecution, SingleTrack> world(support::straight_road());
     auto const id = world.add({.position = {20.0, -1.75}, .speed = 2.0, .behavior = Wishful{}.with(Wish{desired})});
@@ -223,12 +195,30 @@ TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; one that is no number is 
   CHECK(drive(std::nan(""), speed) == StepProblem::not_finite);
 }
 
-TEST_CASE("a law whose acceleration is no number is reported by the step") {
+TEST_CASE("a law whose acceleration is NaN is reported by the step, whatever else is ahead") {
   Doubters world(support::straight_road());
   auto const id = world.add({.position = {20.0, -1.75}, .speed = 2.0, .behavior = Doubtful{}});
   REQUIRE(world.step(0.2));
-  world.add({.position = {60.0, -1.75}, .speed = 2.0, .behavior = IdmClassic{}});
+  world.add({.position = {60.0, -1.75}, .speed = 2.0});
   auto const result = world.step(0.2);
   CHECK(result.problem == StepProblem::not_finite);
   CHECK(result.agent == id);
+}
+
+TEST_CASE("limits lose no NaN, in any order; a gap that is NaN stops the driver") {
+  auto const nan = std::nan("");
+  for (bool const first : {true, false}) {
+    Undecided const law;  // NaN behind whatever is nearer than 100 m
+    Limits<Undecided> limits(law, 10.0, 15.0);
+    for (double const gap : {first ? 20.0 : 200.0, first ? 200.0 : 20.0}) limits.heed({gap, 10.0});
+    CHECK(std::isnan(limits.acceleration()));
+    limits.bound(first ? LongitudinalMotion<double>{nan, nan} : LongitudinalMotion<double>{1.0, 2.0});
+    limits.bound(first ? LongitudinalMotion<double>{1.0, 2.0} : LongitudinalMotion<double>{nan, nan});
+    CHECK(std::isnan(limits.within({1.5, 2.0}).distance));
+
+    Idm const idm;
+    Limits<Idm> blind(idm, 10.0, 15.0);
+    for (double const gap : {first ? nan : 20.0, first ? 20.0 : nan}) blind.heed({gap, 10.0});
+    CHECK(blind.acceleration() == idm.lowest_acceleration);
+  }
 }

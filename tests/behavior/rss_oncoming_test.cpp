@@ -125,3 +125,30 @@ TEST_CASE("nobody brakes for oncoming vehicles in their own lane") {
     for (auto const& record : world.frame().agents) CHECK(record.state.speed == doctest::Approx(15.0).epsilon(1e-3));
   }
 }
+
+TEST_CASE("an oncoming vehicle counts round a bend as on a straight road") {
+  cb::RssParameters const rss;
+  double const distance = cb::rss_opposite_direction(rss, 15.0, 15.0);  // between the front ends
+  for (double const curvature : {0.0, 1.0 / 75.0, 1.0 / 40.0})
+    for (double const more : {-10.0, 15.0}) {
+      CAPTURE(curvature);
+      auto const map =
+          support::map_of({.id = "1",
+                           .line = cb::map::lay_from({}, {{10.0}, {230.0, curvature, curvature}, {10.0}}),
+                           .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
+      auto const& lane = map->lane(map->find_lane("1", 20.0, -1));
+      World world(map);
+      auto const own = lane.path.pose(15.0);
+      double const fronts = 2.0 * cb::geometry::car().front;
+      auto const theirs = lane.path.pose(15.0 + distance + fronts + more);
+      auto const id =
+          world.add({.position = own.position(), .heading = own.heading, .speed = 15.0, .behavior = Safe{{}, rss}});
+      world.add({.position = cb::geometry::to_map(theirs, {0.0, 1.75}),
+                 .heading = theirs.heading + cb::geometry::pi,
+                 .speed = 15.0});
+      auto const view = world.observe(id);
+      auto end = view.state();
+      end.x += 3.0;
+      CHECK(Safe{{}, rss}.response(view, end, 0.2).brake == (more < 0.0));
+    }
+}

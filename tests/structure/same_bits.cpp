@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cambium/behavior.hpp"
+#include "cambium/execution/lqr.hpp"
 #include "cambium/execution/stanley.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/building/map_builder.hpp"
@@ -61,4 +62,5 @@ int main() {
   print<cb::UrbanDriver, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::HumanDriver<cb::Mobil>,
         cb::RssConformant<cb::IdmClassic>, cb::Pedestrian>(map);
   std::printf("%s\n", yardstick::driven<cb::IdmLaneTracking, cb::StanleyExecution>("crossing, Stanley", map).c_str());
+  std::printf("%s\n", yardstick::driven<cb::Mobil, cb::LqrExecution>("crossing, LQR", map).c_str());
 }

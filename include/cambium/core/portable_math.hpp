@@ -11,11 +11,11 @@
 
 /// Elementary functions of operations alone that IEEE 754 rounds correctly (additions, multiplications, divisions,
 /// roots, remainders, explicit fused operations): the same bits with any standard library and any compiler that does
-/// not contract multiplications and additions by itself. Maps are built and worlds step by these. Errors are relative,
-/// in units in the last place; angles are in radians.
+/// not contract multiplications and additions by itself. Maps are built and worlds step by these; only coordinates on the
+/// globe are not. Errors are relative, in units in the last place; angles are in radians.
 ///
-/// Random numbers take only `log`, `pow` and `fused_exp`, of explicit fused operations, in which there is nothing to
-/// contract: they are the same even then. `exp` is six times as fast as `fused_exp` where the compiler calls a
+/// Random numbers take only `log`, `pow` and `fused_exp`, which use explicit fused operations only, so that contraction
+/// cannot change them. `exp` is six times as fast as `fused_exp` where the compiler calls a
 /// function for a fused operation.
 namespace cambium::portable {
 
@@ -134,8 +134,8 @@ inline constexpr double slight_angle = 0.125;
           std::bit_cast<double>(cosine_bits ^ swapped ^ sign_of_cos)};
 }
 
-/// Sine and cosine, with an absolute error below 2.5e-16 for |x| <= 1e5, and 3e-16 up to 1e15; beyond, of the remainder
-/// by twice the rounded pi. Inline, without a call for |x| <= 1e5. NaN if `x` is not finite.
+/// Sine and cosine, with an absolute error below 2.5e-16 for |x| <= 1e5, and 3e-16 up to 1e15; beyond that, those of the
+/// remainder modulo 2 pi rounded to double. The sine of -0 is 0. Inline, without a call for |x| <= 1e5. NaN if `x` is not finite.
 [[nodiscard]] inline SinCos sin_cos(double x) {
   if (std::abs(x) <= 1e5) [[likely]] {
     return sin_cos_bounded(x);
@@ -153,7 +153,7 @@ inline constexpr double slight_angle = 0.125;
 [[nodiscard]] inline double sin(double x) { return sin_cos(x).sin; }
 /// See `sin_cos`.
 [[nodiscard]] inline double cos(double x) { return sin_cos(x).cos; }
-/// Error below 5.
+/// Error below 5 for |x| <= 1e5; beyond, that of the angle.
 [[nodiscard]] inline double tan(double x) {
   if (std::abs(x) <= slight_angle) return tan_slight(x);
   auto const at = sin_cos(x);
@@ -291,10 +291,10 @@ template <class... Rest>
   return std::copysign(e / (e + 2.0), x);
 }
 
-/// Error below 1.5; no intermediate overflow or underflow.
+/// Error below 1, and below 2 where squares would overflow or underflow.
 [[nodiscard]] inline double hypot(double x, double y) {
   double const a = std::abs(x), b = std::abs(y), large = a < b ? b : a, small = a < b ? a : b;
-  if (large == detail::infinite) return large;
+  if (a == detail::infinite || b == detail::infinite) return detail::infinite;
   if (large < 1e150 && large > 1e-140) return std::sqrt(large * large + small * small);
   if (large == 0.0 || large != large || small != small) return large + small;
   double const ratio = small / large;

@@ -25,7 +25,7 @@ inline constexpr double pi = 3.14159265358979323846;
   constexpr double half_pi = pi / 2;
   auto const quarter = static_cast<double>(((count + 1) & 3) - 1);  // -1, 0, 1 or 2
   double const wrapped = rest + quarter * half_pi;
-  return wrapped > pi ? wrapped - 2.0 * pi : (wrapped <= -pi ? pi : wrapped);
+  return wrapped > pi ? wrapped - 2.0 * pi : wrapped;
 }
 
 /// The turn from direction `b` to direction `a`: `a - b` in (-pi, pi], positive if `a` lies counter-clockwise of `b`.

@@ -16,17 +16,6 @@
 namespace cambium {
 
 namespace detail {
-/// How road users count that merge into the lane, as a driver's lateral part says.
-template <class Lateral>
-[[nodiscard]] Merging merging_of(Lateral const& lateral) {
-  if constexpr (requires { lateral.keep.merging; })
-    return lateral.keep.merging;
-  else if constexpr (requires { lateral.merging; })
-    return lateral.merging;
-  else
-    return Merging::counts;
-}
-
 /// The lateral part of a driver whose limits are `Limits`, see `Driver`.
 template <class L, class Limits>
 concept LateralPart = std::copyable<L> && Described<L> && std::copyable<MemoryOf<L>> &&
@@ -34,9 +23,10 @@ concept LateralPart = std::copyable<L> && Described<L> && std::copyable<MemoryOf
   {
     lateral.drive(view, memory, lateral.look(view, memory, limits, dt), limits, dt)
     } -> std::same_as<Plan<ViewArchetype>>;
+  { lateral.counted() } -> std::same_as<Merging>;
 };
 
-/// Returns true; fails to compile with a sentence that says which part is none.
+/// Returns true; fails to compile with a sentence that names the part that is wrong.
 template <class Law, class Lateral>
 [[nodiscard]] constexpr bool check_driver() {
   static_assert(
@@ -54,10 +44,11 @@ template <class Law, class Lateral>
   return true;
 }
 
-/// Throws `ParameterError` if a parameter that every law has makes no sense: its description need not list it.
+/// Throws `ParameterError` if a parameter that every law has is out of range. Checked here, because a law's description
+/// need not list it.
 template <CarFollowingLaw Law>
 CAMBIUM_COLD void check_law(Law const& law, std::string const& where) {
-  constexpr Range negative{-positive.high, -positive.low};
+  constexpr Range negative{-positive.high, -0.01};
   struct {
     ParameterInfo info;
     double value;
@@ -86,7 +77,7 @@ CAMBIUM_COLD void check_law(Law const& law, std::string const& where) {
 ///   - `look(view, memory, limits, dt)`: decides on the course, adds who is in its way to the limits, and
 ///     returns what `drive` should know;
 ///   - `drive(view, memory, seen, limits, dt)`: the plan that drives `limits.within(limits.motion(dt))` there;
-///   - `merging`, or a part `keep` with it: how road users count that merge into the lane, see `Merging`.
+///   - `Merging counted() const`: how road users count that merge into the lane.
 /// - `Heeds`: see `Heeding`.
 template <class Law, class Lateral, class... Heeds>
 struct Driver {
@@ -153,8 +144,7 @@ struct Driver {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
-    Limits<Law> limits(law, speed, heeds.desired_speed(law, view, speed),
-                       heeds.merging(view, detail::merging_of(lateral)));
+    Limits<Law> limits(law, speed, heeds.desired_speed(law, view, speed), heeds.merging(view, lateral.counted()));
     limits.gives_way = heeds_conflicts;
     auto const seen = lateral.look(view, memory.lateral, limits, dt);
     heeds.heed(view, memory.heeds, limits, dt);

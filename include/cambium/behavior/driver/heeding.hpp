@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <string_view>
@@ -51,6 +52,13 @@ concept HeedText = std::copyable<H> && Described<H> && requires {
   { H::name } -> std::convertible_to<std::string_view>;
   { H::summary } -> std::convertible_to<char const*>;
 };
+
+struct HeedNames {
+  int desired_speed, merging;
+};
+/// A second member of these names makes those of a heed ambiguous, even templates.
+template <class H>
+struct WithHeedNames : H, HeedNames {};
 
 /// Returns true; fails to compile with a sentence that says what is wrong with a driver's heeds.
 template <class... Heeds>
@@ -138,7 +146,13 @@ struct Heeding : detail::Slotted<Heeds>... {
     [[maybe_unused]] auto const lower = [&](auto const& heed) {
       if constexpr (requires { heed.desired_speed(law, view, speed); }) {
         double const lowered = heed.desired_speed(law, view, speed);
-        if (!(lowered >= desired)) desired = lowered < lowest ? lowest : lowered;
+        if (lowered < desired || std::isnan(lowered)) desired = lowered < lowest ? std::min(desired, lowest) : lowered;
+      } else {
+        using H = std::remove_cvref_t<decltype(heed)>;
+        static_assert(
+            std::is_final_v<H> || requires { &detail::WithHeedNames<H>::desired_speed; },
+            "cambium::Driver<Law, Lateral, Heeds...>: a heed's desired_speed must be `template <class Law, class "
+            "View> double desired_speed(Law const&, View const&, double speed) const` (see Heeding)");
       }
     };
     (lower(part<Heeds>()), ...);
@@ -149,7 +163,15 @@ struct Heeding : detail::Slotted<Heeds>... {
   template <class View>
   [[nodiscard]] Merging merging([[maybe_unused]] View const& view, Merging merging) const {
     [[maybe_unused]] auto const ask = [&](auto const& heed) {
-      if constexpr (requires { heed.merging(view, merging); }) merging = heed.merging(view, merging);
+      if constexpr (requires { heed.merging(view, merging); }) {
+        merging = heed.merging(view, merging);
+      } else {
+        using H = std::remove_cvref_t<decltype(heed)>;
+        static_assert(
+            std::is_final_v<H> || requires { &detail::WithHeedNames<H>::merging; },
+            "cambium::Driver<Law, Lateral, Heeds...>: a heed's merging must be `template <class View> Merging "
+            "merging(View const&, Merging) const` (see Heeding)");
+      }
     };
     (ask(part<Heeds>()), ...);
     return merging;

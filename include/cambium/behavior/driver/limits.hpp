@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <limits>
 #include <utility>
@@ -18,7 +19,7 @@ namespace cambium {
 /// - `double acceleration(double speed, double desired_speed, Constraint const& leader) const` [m/s^2]: never higher
 ///   than on a free road; below the lowest, it brakes with the lowest; NaN is driven, and the step reports it. The
 ///   leader's gap is above 0, and infinite on a free road. `desired_speed` is the parameter, or lower where a speed
-///   limit is; a law that responds to it with a lag passes the sign too fast.
+///   limit is; a law that responds late to a lower one passes the sign too fast.
 ///
 /// A law may further have
 /// - `static constexpr bool asks_acceleration = true`, if it wants to know a leader's acceleration;
@@ -96,11 +97,11 @@ class Limits {
   [[nodiscard]] Response const& response() const { return response_; }   ///< the law at the driver's speed
 
   /// Keeps a constraint if it is stricter: if the law responds to it with a lower acceleration; among equals, the
-  /// nearer one.
+  /// nearer one. Behind a gap that is not above 0, or NaN, laws brake as hard as they can.
   void heed(Constraint const& other) {
-    if (constraint_.gap < infinite) {  // a single constraint needs no comparison
-      double const a = response_(other);
-      if (a > acceleration() || (a == acceleration() && other.gap >= constraint_.gap)) return;  // a NaN stays
+    if (is_constrained()) {  // a single constraint needs no comparison
+      double const now = acceleration(), a = response_(other);
+      if (a > now || (a == now && other.gap >= constraint_.gap) || std::isnan(now)) return;
       acceleration_ = a;
     } else {
       acceleration_ = not_asked;  // that of the free road may have been asked for
@@ -113,7 +114,7 @@ class Limits {
     acceleration_ = not_asked;
   }
   /// Whether the road is not free.
-  [[nodiscard]] bool is_constrained() const { return constraint_.gap < infinite; }
+  [[nodiscard]] bool is_constrained() const { return constraint_.gap != infinite; }
   /// Keeps a motion over the step if it is shorter.
   void bound(LongitudinalMotion<double> const& motion) { bound_ = nearer(bound_, motion); }
 
@@ -138,7 +139,7 @@ class Limits {
  private:
   [[nodiscard]] static LongitudinalMotion<double> nearer(LongitudinalMotion<double> const& motion,
                                                          LongitudinalMotion<double> const& other) {
-    return other.distance < motion.distance ? other : motion;
+    return motion.distance <= other.distance || std::isnan(motion.distance) ? motion : other;  // NaN is not lost
   }
 
   Law const* law_;

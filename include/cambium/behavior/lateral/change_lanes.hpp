@@ -122,6 +122,9 @@ struct ChangeLanes {
   }
 
   /// What the driver remembers.
+  /// How road users count that merge into the lane.
+  [[nodiscard]] Merging counted() const { return keep.merging; }
+
   struct Memory {
     LaneChange change{};
     float rest{};  ///< time until the next change may begin [s]

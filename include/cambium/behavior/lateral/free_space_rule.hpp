@@ -67,8 +67,7 @@ struct FreeSpaceRule {
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;
       option.rear = view.behind(option.place);
-      if (!space(view, option) || !now.changing.is_safe(view, now.limits, option, now.changing.safe_deceleration))
-        continue;
+      if (!space(view, option) || !now.is_safe(option)) continue;
       best = ahead;
       target = side;
     }

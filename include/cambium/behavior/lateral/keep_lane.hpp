@@ -59,6 +59,9 @@ struct KeepLane {
         parameter("side_margin", &P::side_margin, "m", Range{0, 10}, "from the own side to the border there"));
   }
 
+  /// How road users count that merge into the lane.
+  [[nodiscard]] Merging counted() const { return merging; }
+
   struct Memory {
     std::int16_t aside = 0;  ///< offset to the left of the middle of the lane to which it steers, at the side or to
                              ///< pass [mm]; 1 towards the middle; 0: it keeps its offset

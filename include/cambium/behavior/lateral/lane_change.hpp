@@ -115,7 +115,7 @@ struct LaneChangeCourse {
       throw ParameterError(where + ".duration",
                            "is " + detail::number_text(duration) + " s, less than shortest_duration, " +
                                detail::number_text(shortest_duration) + " s",
-                           "lower both");
+                           "lower shortest_duration, too, or raise duration");
   }
 
   /// Shortest length of a change [m], however slow a vehicle of this shape drives.

@@ -128,9 +128,7 @@ struct MobilRule {
       if (is_prejudged && others + situation.own_after + pull <= best) continue;
       option.rear = view.behind(option.place);
       double const worth = worth_of(now, situation, option, inwards) + pull;
-      if (!(worth > best) || !now.changing.is_safe(view, now.limits, option, now.changing.safe_deceleration) ||
-          !filters(view, option))
-        continue;
+      if (!(worth > best) || !now.is_safe(option) || !filters(view, option)) continue;
       best = worth;
       target = side;
     }

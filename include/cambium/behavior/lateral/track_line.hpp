@@ -43,6 +43,9 @@ struct TrackLine {
   double lateral_acceleration_limit = 4.0;
   double longest_substep = 0.2;
 
+  /// How road users count that merge into the lane.
+  [[nodiscard]] Merging counted() const { return keep.merging; }
+
   using Memory = KeepLane::Memory;
 
   static constexpr char const* name = "track_line";

@@ -61,8 +61,7 @@ class AccLaw {
 
   /// Motion over `dt` [s] behind a leader of constant speed; IDM's own, within `tolerance`, if `coolness` is 0.
   [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
-    constexpr double tolerance = 1e-4;  // [m/s^2], as in `Idm`
-    if (coolness_ == 0.0) return detail::idm_motion(terms_, speed_, leader.gap, leader.speed, dt, tolerance);
+    if (coolness_ == 0.0) return detail::idm_motion(terms_, speed_, leader.gap, leader.speed, dt, Idm{}.tolerance);
     return follow_motion(*this, speed_, leader, dt);
   }
 

@@ -76,7 +76,7 @@ struct Idm {
 };
 static_assert(HasIdmParameters<Idm>);
 
-/// x to the power of `exponent`, without `pow` for IDM's usual 4; with others, 0 for x < 0.
+/// x to the power of `exponent`, without `pow` for IDM's usual 4; with other exponents, 0 for x <= 0.
 template <class Scalar>
 [[nodiscard]] Scalar idm_power(Scalar x, double exponent) {
   if (exponent == 4.0) return (x * x) * (x * x);

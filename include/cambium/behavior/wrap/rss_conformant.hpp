@@ -109,7 +109,7 @@ struct RssConformant {
 
  private:
   static constexpr double rounding = 1e-9;
-  static constexpr double farthest = 400.0;     // [m]
+  static constexpr double farthest = Look::horizon;
   static constexpr double before_merge = 15.0;  // [m]: bodies touch before lanes are one
 
   /// Place, extent and velocity of a road user relative to the own lane corridor.
@@ -226,7 +226,7 @@ struct RssConformant {
     double const apart = dx * dx + dy * dy;
     if (apart <= same * same) return true;
     double const opposite = step.opposite_at(fast) + sizes;
-    return apart <= opposite * opposite && !(state.speed >= 0.0 && portable::cos(state.heading - own.heading) > 0.2);
+    return apart <= opposite * opposite;
   }
   /// At least the radius of a shape [m], without a root.
   [[nodiscard]] static double half_girth(geometry::Shape const& shape) {

@@ -123,7 +123,8 @@ struct LaneSpan {
     std::vector<int> ids;
     for (auto const& lane : section_at(road, end).lanes)
       if (lane.id != 0 && is_drivable(lane.type) && leaves(road, end, lane) == leaving) ids.push_back(lane.id);
-    std::sort(ids.begin(), ids.end(), [](int l, int r) { return std::abs(l) < std::abs(r); });
+    std::sort(ids.begin(), ids.end(),
+              [](int l, int r) { return std::pair(std::abs(l), l) < std::pair(std::abs(r), r); });
     return ids;
   };
   auto const out = lanes(a, from.end, true), in = lanes(b, to.end, false);
