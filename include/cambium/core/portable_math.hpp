@@ -9,14 +9,16 @@
 #include <limits>
 #include <utility>
 
+#include "cambium/core/macros.hpp"
+
 /// Elementary functions of operations alone that IEEE 754 rounds correctly (additions, multiplications, divisions,
 /// roots, remainders, explicit fused operations): the same bits with any standard library and any compiler that does
-/// not contract multiplications and additions by itself. Maps are built and worlds step by these; only coordinates on the
-/// globe are not. Errors are relative, in units in the last place; angles are in radians.
+/// not contract multiplications and additions by itself. Maps are built and worlds step by these; only coordinates on
+/// the globe are not. Errors are relative, in units in the last place; angles are in radians.
 ///
 /// Random numbers take only `log`, `pow` and `fused_exp`, which use explicit fused operations only, so that contraction
-/// cannot change them. `exp` is six times as fast as `fused_exp` where the compiler calls a
-/// function for a fused operation.
+/// cannot change them; they are long, and never inlined. `exp` is six times as fast as `fused_exp` where the compiler
+/// calls a function for a fused operation.
 namespace cambium::portable {
 
 namespace detail {
@@ -134,8 +136,9 @@ inline constexpr double slight_angle = 0.125;
           std::bit_cast<double>(cosine_bits ^ swapped ^ sign_of_cos)};
 }
 
-/// Sine and cosine, with an absolute error below 2.5e-16 for |x| <= 1e5, and 3e-16 up to 1e15; beyond that, those of the
-/// remainder modulo 2 pi rounded to double. The sine of -0 is 0. Inline, without a call for |x| <= 1e5. NaN if `x` is not finite.
+/// Sine and cosine, with an absolute error below 2.5e-16 for |x| <= 1e5, and 3e-16 up to 1e15; beyond that, those of
+/// the remainder modulo 2 pi rounded to double. The sine of -0 is 0. Inline, without a call for |x| <= 1e5. NaN if `x`
+/// is not finite.
 [[nodiscard]] inline SinCos sin_cos(double x) {
   if (std::abs(x) <= 1e5) [[likely]] {
     return sin_cos_bounded(x);
@@ -228,7 +231,7 @@ template <class... Rest>
 
 /// `exp` that no compiler contracts; error below 2, or one subnormal step.
 /// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
-[[nodiscard]] inline double fused_exp(double x) {
+CAMBIUM_NOINLINE [[nodiscard]] inline double fused_exp(double x) {
   constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
   if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN
   if (x > 710.0) return detail::infinite;
@@ -251,7 +254,7 @@ template <class... Rest>
 
 /// Natural logarithm; error below 2. Method: x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(f),
 /// f = (m - 1) / (m + 1), as a power series.
-[[nodiscard]] inline double log(double x) {
+CAMBIUM_NOINLINE [[nodiscard]] inline double log(double x) {
   if (!(x >= std::numeric_limits<double>::min() && x < detail::infinite)) [[unlikely]] {
     if (x > 0.0) return x < detail::infinite ? log(x * 0x1p54) - 54.0 * 0x1.62e42fefa39efp-1 : x;
     return x == 0.0 ? -detail::infinite : std::numeric_limits<double>::quiet_NaN();
@@ -273,7 +276,7 @@ template <class... Rest>
 
 /// x^y for x >= 0, NaN below. For y in [0, 4096), the integer part of y is computed by multiplication. The error grows
 /// with |y|, and where y < 0 with |y ln x|; below 1e-13 for |y| <= 40 and x in [0.01, 100].
-[[nodiscard]] inline double pow(double x, double y) {
+CAMBIUM_NOINLINE [[nodiscard]] inline double pow(double x, double y) {
   if (y == 0.0 || x == 1.0) return 1.0;
   if (!(x > 0.0))
     return x != 0.0 || y != y ? std::numeric_limits<double>::quiet_NaN() : y > 0.0 ? 0.0 : detail::infinite;

@@ -10,7 +10,6 @@
 #include "cambium/behavior/driver/limits.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/error.hpp"
-#include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -47,7 +46,7 @@ template <class Law, class Lateral>
 /// Throws `ParameterError` if a parameter that every law has is out of range. Checked here, because a law's description
 /// need not list it.
 template <CarFollowingLaw Law>
-CAMBIUM_COLD void check_law(Law const& law, std::string const& where) {
+void check_law(Law const& law, std::string const& where) {
   constexpr Range negative{-positive.high, -0.01};
   struct {
     ParameterInfo info;
