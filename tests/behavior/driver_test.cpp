@@ -195,14 +195,39 @@ TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; NaN is reported", Law, Id
   CHECK(drive(std::nan(""), speed) == StepProblem::not_finite);
 }
 
-TEST_CASE("a law whose acceleration is NaN is reported by the step, whatever else is ahead") {
-  Doubters world(support::straight_road());
-  auto const id = world.add({.position = {20.0, -1.75}, .speed = 2.0, .behavior = Doubtful{}});
+TEST_CASE_TEMPLATE("a law whose acceleration is NaN is reported by the step, whatever wraps the driver", Driver,
+                   Doubtful, HumanDriver<Doubtful>, RssConformant<Doubtful>, RssConformant<HumanDriver<Doubtful>>) {
+  World<BehaviorSet<Driver, IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road());
+  auto const id = world.add({.position = {20.0, -1.75}, .speed = 2.0, .behavior = Driver{}});
   REQUIRE(world.step(0.2));
-  world.add({.position = {60.0, -1.75}, .speed = 2.0});
+  world.add({.position = {100.0, -1.75}, .speed = 2.0, .behavior = IdmClassic{}});
   auto const result = world.step(0.2);
   CHECK(result.problem == StepProblem::not_finite);
   CHECK(result.agent == id);
+}
+
+namespace {
+/// Bounds the motion by what it is told.
+struct Bounded final {
+  LongitudinalMotion<double> motion{};
+  static constexpr char const *name = "bounded", *summary = "bounds the motion";
+  static constexpr auto parameters() { return parameter_list(); }
+  template <class View, class Limits>
+  void heed(View const&, Limits& limits, double) const {
+    limits.bound(motion);
+  }
+};
+}  // namespace
+
+TEST_CASE("a bound that leads backwards stops the vehicle") {
+  using Stopped = Driver<Idm, KeepLane, Bounded>;
+  for (auto const& motion : {LongitudinalMotion<double>{-5.0, 5.0}, {0.0, 5.0}, {-1e300, 0.0}}) {
+    World<BehaviorSet<Stopped>, InterpolateExecution, SingleTrack> world(support::straight_road());
+    auto const id = world.add({.position = {20.0, -1.75}, .behavior = Stopped{}.with(Bounded{motion})});
+    for (int step = 0; step < 5; ++step) REQUIRE(world.step(0.2));
+    CHECK(world.state(id).x == doctest::Approx(20.0).epsilon(1e-9));
+    CHECK(world.state(id).speed == 0.0);
+  }
 }
 
 TEST_CASE("limits lose no NaN, in any order; a gap that is NaN stops the driver") {

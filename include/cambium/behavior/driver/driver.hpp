@@ -30,15 +30,17 @@ template <class Law, class Lateral>
 [[nodiscard]] constexpr bool check_driver() {
   static_assert(
       CarFollowingLaw<Law>,
-      "cambium::Driver<Law, Lateral, Heeds...>: the law must be a described struct with desired_speed, time_headway, "
-      "minimum_gap, maximum_acceleration, comfortable_deceleration, lowest_acceleration and `double "
-      "acceleration(double "
+      "cambium::Driver<Law, Lateral, Heeds...>: the law must be a copyable struct with `static constexpr char const* "
+      "name` "
+      "and `static constexpr auto parameters()`, with public desired_speed, time_headway, minimum_gap, "
+      "maximum_acceleration, comfortable_deceleration and lowest_acceleration, and with `double acceleration(double "
       "speed, double desired_speed, cambium::Constraint const& leader) const` (see CarFollowingLaw)");
   if constexpr (CarFollowingLaw<Law>)
     static_assert(
         LateralPart<Lateral, Limits<Law>>,
-        "cambium::Driver<Law, Lateral, Heeds...>: the lateral part, after the law, must be a described struct "
-        "with look(view, memory, limits, dt) and drive(view, memory, seen, limits, dt), such as "
+        "cambium::Driver<Law, Lateral, Heeds...>: the lateral part, after the law, must be a described struct with "
+        "public "
+        "const functions look(view, memory, limits, dt), drive(view, memory, seen, limits, dt) and counted(), such as "
         "cambium::KeepLane or cambium::ChangeLanes<Rule> (see Driver)");
   return true;
 }
@@ -51,12 +53,13 @@ void check_law(Law const& law, std::string const& where) {
   struct {
     ParameterInfo info;
     double value;
-  } const all[] = {{{"desired_speed", "m/s", positive, ""}, law.desired_speed},
-                   {{"time_headway", "s", non_negative, ""}, law.time_headway},
-                   {{"minimum_gap", "m", non_negative, ""}, law.minimum_gap},
-                   {{"maximum_acceleration", "m/s^2", positive, ""}, law.maximum_acceleration},
-                   {{"comfortable_deceleration", "m/s^2", positive, ""}, law.comfortable_deceleration},
-                   {{"lowest_acceleration", "m/s^2", negative, ""}, law.lowest_acceleration}};
+  } const all[] = {
+      {{"desired_speed", "m/s", positive, ""}, static_cast<double>(law.desired_speed)},
+      {{"time_headway", "s", non_negative, ""}, static_cast<double>(law.time_headway)},
+      {{"minimum_gap", "m", non_negative, ""}, static_cast<double>(law.minimum_gap)},
+      {{"maximum_acceleration", "m/s^2", positive, ""}, static_cast<double>(law.maximum_acceleration)},
+      {{"comfortable_deceleration", "m/s^2", positive, ""}, static_cast<double>(law.comfortable_deceleration)},
+      {{"lowest_acceleration", "m/s^2", negative, ""}, static_cast<double>(law.lowest_acceleration)}};
   for (auto const& [info, value] : all)
     if (!(value >= info.range.low && value <= info.range.high))
       throw ParameterError(where + ".law." + info.name, "is " + with_unit(number_text(value), info.unit),

@@ -48,7 +48,7 @@ using FoundPart = std::tuple_element_t<place_of<T, Parts...>(), std::tuple<Parts
 
 /// How messages and files call a heed.
 template <class H>
-concept HeedText = std::copyable<H> && Described<H> && requires {
+concept HeedText = std::copyable<H> && std::default_initializable<H> && Described<H> && requires {
   { H::name } -> std::convertible_to<std::string_view>;
   { H::summary } -> std::convertible_to<char const*>;
 };
@@ -59,6 +59,20 @@ struct HeedNames {
 /// A second member of these names makes those of a heed ambiguous, even templates.
 template <class H>
 struct WithHeedNames : H, HeedNames {};
+template <class H>
+[[nodiscard]] constexpr bool names_desired_speed() {
+  if constexpr (!std::is_final_v<H>) return !requires {
+      &WithHeedNames<H>::desired_speed;
+    };
+  return false;
+}
+template <class H>
+[[nodiscard]] constexpr bool names_merging() {
+  if constexpr (!std::is_final_v<H>) return !requires {
+      &WithHeedNames<H>::merging;
+    };
+  return false;
+}
 
 /// Returns true; fails to compile with a sentence that says what is wrong with a driver's heeds.
 template <class... Heeds>
@@ -144,13 +158,15 @@ struct Heeding : detail::Slotted<Heeds>... {
     [[maybe_unused]] constexpr double lowest = 0.1;  // laws divide by it
     double desired = law.desired_speed;
     [[maybe_unused]] auto const lower = [&](auto const& heed) {
-      if constexpr (requires { heed.desired_speed(law, view, speed); }) {
+      if constexpr (requires {
+                      { heed.desired_speed(law, view, speed) } -> std::convertible_to<double>;
+                    }) {
         double const lowered = heed.desired_speed(law, view, speed);
         if (lowered < desired || std::isnan(lowered)) desired = lowered < lowest ? std::min(desired, lowest) : lowered;
       } else {
         using H = std::remove_cvref_t<decltype(heed)>;
         static_assert(
-            std::is_final_v<H> || requires { &detail::WithHeedNames<H>::desired_speed; },
+            !detail::names_desired_speed<H>(),
             "cambium::Driver<Law, Lateral, Heeds...>: a heed's desired_speed must be `template <class Law, class "
             "View> double desired_speed(Law const&, View const&, double speed) const` (see Heeding)");
       }
@@ -163,12 +179,14 @@ struct Heeding : detail::Slotted<Heeds>... {
   template <class View>
   [[nodiscard]] Merging merging([[maybe_unused]] View const& view, Merging merging) const {
     [[maybe_unused]] auto const ask = [&](auto const& heed) {
-      if constexpr (requires { heed.merging(view, merging); }) {
+      if constexpr (requires {
+                      { heed.merging(view, merging) } -> std::same_as<Merging>;
+                    }) {
         merging = heed.merging(view, merging);
       } else {
         using H = std::remove_cvref_t<decltype(heed)>;
         static_assert(
-            std::is_final_v<H> || requires { &detail::WithHeedNames<H>::merging; },
+            !detail::names_merging<H>(),
             "cambium::Driver<Law, Lateral, Heeds...>: a heed's merging must be `template <class View> Merging "
             "merging(View const&, Merging) const` (see Heeding)");
       }
@@ -193,14 +211,22 @@ struct Heeding : detail::Slotted<Heeds>... {
   }
   template <class H, class View, class Limits>
   void heed_one(View const& view, [[maybe_unused]] Memory& memory, Limits& limits, double dt) const {
-    if constexpr (requires { part<H>().heed(view, limits, dt); })
+    constexpr bool heeds = requires { part<H>().heed(view, limits, dt); };
+    constexpr bool remembers = requires(MemoryOf<H> & own) { part<H>().heed(view, own, limits, dt); };
+    static_assert(
+        !requires { part<H>().heed(view, Limits(limits), dt); } &&
+            !requires(MemoryOf<H> & own) { part<H>().heed(view, own, Limits(limits), dt); } &&
+            !requires { part<H>().heed(view, MemoryOf<H>{}, limits, dt); },
+        "cambium::Driver<Law, Lateral, Heeds...>: a heed must take the Limits, and its Memory, by reference: "
+        "what it adds to a copy is lost");
+    if constexpr (heeds)
       part<H>().heed(view, limits, dt);
-    else if constexpr (requires(MemoryOf<H> & own) { part<H>().heed(view, own, limits, dt); })
+    else if constexpr (remembers)
       part<H>().heed(view, static_cast<detail::HeedMemory<H>&>(memory).memory, limits, dt);
     else
       static_assert(
           requires { part<H>().desired_speed(limits.law(), view, dt); },
-          "cambium::Driver<Law, Lateral, Heeds...>: each heed must have `template <class View, class Limits> "
+          "cambium::Driver<Law, Lateral, Heeds...>: each heed must have a public `template <class View, class Limits> "
           "void heed(View const&, Limits&, double dt) const`, with its Memory& before the limits if it has "
           "one, or desired_speed(law, view, speed) (see Heeding)");
   }

@@ -26,8 +26,9 @@ namespace cambium {
 /// - `at(speed, desired_speed)`, which returns what `AtSpeed` is for all laws, if it is computed faster for several
 ///   leaders at one speed, or has a better integration scheme than `follow_motion`.
 template <class L>
-concept CarFollowingLaw = std::copyable<L> && Described<L> &&
+concept CarFollowingLaw = std::copyable<L> && std::default_initializable<L> && Described<L> &&
     requires(L const law, Constraint const& leader, double x) {
+  { L::name } -> std::convertible_to<char const*>;
   { law.desired_speed } -> std::convertible_to<double>;
   { law.time_headway } -> std::convertible_to<double>;
   { law.minimum_gap } -> std::convertible_to<double>;
@@ -115,8 +116,10 @@ class Limits {
   }
   /// Whether the road is not free.
   [[nodiscard]] bool is_constrained() const { return constraint_.gap != infinite; }
-  /// Keeps a motion over the step if it is shorter.
-  void bound(LongitudinalMotion<double> const& motion) { bound_ = nearer(bound_, motion); }
+  /// Keeps a motion over the step if it is shorter. One that leads backwards, or nowhere, stops the vehicle.
+  void bound(LongitudinalMotion<double> const& motion) {
+    bound_ = nearer(bound_, motion.distance <= 0.0 ? LongitudinalMotion<double>{0.0, 0.0} : motion);
+  }
 
   [[nodiscard]] Constraint const& constraint() const { return constraint_; }
   /// The law's response to the constraint [m/s^2].

@@ -56,6 +56,7 @@ namespace detail {
 /// A rule of lane changes, see `ChangeLanes`.
 template <class R, class Choice>
 concept LaneRule = std::copyable<R> && Described<R> && requires(R const rule, Choice const& choice) {
+  { R::name } -> std::convertible_to<char const*>;
   { rule(choice) } -> std::same_as<CorridorId>;
 };
 }  // namespace detail
@@ -121,10 +122,10 @@ struct ChangeLanes {
         parameter("course", &P::course, "how long a change takes"));
   }
 
-  /// What the driver remembers.
   /// How road users count that merge into the lane.
   [[nodiscard]] Merging counted() const { return keep.merging; }
 
+  /// What the driver remembers.
   struct Memory {
     LaneChange change{};
     float rest{};  ///< time until the next change may begin [s]
@@ -151,9 +152,10 @@ struct ChangeLanes {
   template <class View, class Limits>
   [[nodiscard]] std::optional<RoadUser> look(View const& view, Memory& memory, Limits& limits, double dt) const {
     using Choice = LaneChoice<View, Limits, ChangeLanes>;
-    static_assert(detail::LaneRule<Rule, Choice>,
-                  "cambium::ChangeLanes<Rule>: the rule must be a described struct with `template <class Choice> "
-                  "cambium::CorridorId operator()(Choice const& choice) const` (see ChangeLanes)");
+    static_assert(
+        detail::LaneRule<Rule, Choice>,
+        "cambium::ChangeLanes<Rule>: the rule must be a struct with a name, parameters() and `template <class Choice> "
+        "cambium::CorridorId operator()(Choice const& choice) const` (see ChangeLanes)");
     double const speed = limits.response().speed();
     auto const leader = memory.change.active() ? view.ahead({.merging = limits.merging})
                                                : keep.next_in_way(view, limits, memory.lane, passes_in_lane(view));
@@ -173,7 +175,8 @@ struct ChangeLanes {
       double const end = lane_end(view, home, view.place().piece);
       bool const is_passing = memory.lane.aside != 0 && !keep.keep_to_side && end == infinite;
       bool const may_change = memory.rest == 0.0f && !is_passing;
-      auto const target = rule(Choice{view, limits, leader, end, may_change, *this});
+      Choice const choice{view, limits, leader, end, may_change, *this};
+      auto const target = rule(choice);
       if (may_change && is_beside(view, target) && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
         auto const change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
         if (!(limits.gives_way && enters_crossing(view, change))) {

@@ -38,7 +38,7 @@ struct ConstantAcceleration {
     double const limit = acceleration < 0 ? 0.0 : std::max(highest_speed, speed);
     double const until_limit = acceleration == 0 ? dt : std::clamp((limit - speed) / acceleration, 0.0, dt);
     double const distance = speed * until_limit + acceleration * until_limit * until_limit / 2;
-    if (until_limit >= dt) return {distance, speed + acceleration * dt};
+    if (!(until_limit < dt)) return {distance, speed + acceleration * dt};  // or NaN
     return {distance + limit * (dt - until_limit), limit};
   }
 };

@@ -124,6 +124,7 @@ struct HumanDriver {
     auto const course = nominal.plan(HumanView<View>(view, estimate), memory.nominal, dt);
     bool const acts_now = reaction_time == 0.0 && !memory.looks_away;
     if (course.status != PlanStatus::valid || (acts_now && looks_away == 0.0)) return course;
+    if (!course.trajectory.empty() && !is_finite(course.trajectory.back())) return course;
     double const speed = std::max(0.0, view.state().speed);
     double const alone = planned(view, before, {.alone = true}, dt);
     memory.age += static_cast<float>(dt);

@@ -154,7 +154,7 @@ struct RssConformant {
   [[nodiscard]] Plan<View> conform(View const& view, Plan<View> plan, Memory& memory, double dt) const {
     if (plan.status != PlanStatus::valid) return plan;
     auto const end = InterpolateExecution{}.execute(plan, view.state(), view.dynamics(), view.time() + dt);
-    if (!end.valid) return plan;
+    if (!end.valid || !is_finite(end.state)) return plan;
     auto const must = response(view, end.state, dt);
     bool const keeps_off = must.keep_off_left || must.keep_off_right;
     double const speed = std::max(0.0, view.state().speed), wanted = (end.state.speed - speed) / dt;
