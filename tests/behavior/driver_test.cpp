@@ -230,7 +230,7 @@ TEST_CASE("a bound that leads backwards stops the vehicle") {
   }
 }
 
-TEST_CASE("limits lose no NaN, in any order; a gap that is NaN stops the driver") {
+TEST_CASE("limits lose no NaN, in any order; a gap or a speed that is NaN stops the driver") {
   auto const nan = std::nan("");
   for (bool const first : {true, false}) {
     Undecided const law;  // NaN behind whatever is nearer than 100 m
@@ -245,5 +245,8 @@ TEST_CASE("limits lose no NaN, in any order; a gap that is NaN stops the driver"
     Limits<Idm> blind(idm, 10.0, 15.0);
     for (double const gap : {first ? nan : 20.0, first ? 20.0 : nan}) blind.heed({gap, 10.0});
     CHECK(blind.acceleration() == idm.lowest_acceleration);
+    Limits<Idm> unsure(idm, 10.0, 15.0);
+    for (double const speed : {first ? nan : 10.0, first ? 10.0 : nan}) unsure.heed({50.0, speed});
+    CHECK(unsure.acceleration() == idm.lowest_acceleration);
   }
 }

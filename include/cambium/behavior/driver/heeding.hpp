@@ -219,6 +219,10 @@ struct Heeding : detail::Slotted<Heeds>... {
             !requires { part<H>().heed(view, MemoryOf<H>{}, limits, dt); },
         "cambium::Driver<Law, Lateral, Heeds...>: a heed must take the Limits, and its Memory, by reference: "
         "what it adds to a copy is lost");
+    static_assert(
+        !heeds || remembers || std::is_same_v<MemoryOf<H>, NoMemory>,
+        "cambium::Driver<Law, Lateral, Heeds...>: a heed with a Memory must take a reference to it before the "
+        "Limits: heed(view, memory, limits, dt)");
     if constexpr (heeds)
       part<H>().heed(view, limits, dt);
     else if constexpr (remembers)
