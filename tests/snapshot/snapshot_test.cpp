@@ -406,7 +406,7 @@ TEST_CASE("a memory that holds NaN thaws as it is") {
 }
 
 TEST_CASE("what a map was built with counts, and the map of each world") {
-  auto const file = std::string(CAMBIUM_SOURCE_DIR) + "/maps/merging.xodr";
+  auto const file = std::string(CAMBIUM_SOURCE_DIR "/maps/merging.xodr");
   auto const map = load_opendrive(file).map, other = load_opendrive(file, {.merge_view = 60.0}).map;
   CHECK(content_hash(*map) == content_hash(*other));
   Sim const world(map), on_other(other);
