@@ -164,17 +164,6 @@ TEST_CASE("what every law has is checked, though a law describes less") {
   CHECK(world.size() == 0);
 }
 
-TEST_CASE("a lane change may not last less than the shortest one") {
-  World<BehaviorSet<Mobil>, InterpolateExecution, SingleTrack> world(support::straight_road());
-  Mobil driver;
-  driver.lateral.course.duration = 2.0;
-  CHECK_THROWS_WITH_AS(
-      world.add({.position = {20.0, -1.75}, .behavior = driver}),
-      doctest::Contains(
-          "lateral.course.duration: is 2 s, less than shortest_duration, 2.5 s; lower shortest_duration, too"),
-      ParameterError);
-}
-
 TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; NaN is reported", Law, Idm, ImprovedIdm, Acc, Gipps) {
   using Wishful = Driver<Law, KeepLane, Wish, SpeedLimit>;
   auto const drive = [](double desired, double& speed) {

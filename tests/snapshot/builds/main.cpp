@@ -101,7 +101,7 @@ desk::World planner(desk::World::Behavior const& ego) {
   desk::World world(merging(), {.seed = 7});
   world.add({.position = {20, -5.25}, .speed = 12, .behavior = ego, .id = desk::ego});
   for (int i = 0; i < 8; ++i) {
-    desk::World::Behavior driver = cb::Intersection{};
+    desk::World::Behavior driver = cb::UrbanDriver{};
     if (i % 3 == 1) driver = cb::Mobil{};
     if (i % 3 == 2) driver = cb::IdmClassic{.law = {.desired_speed = 9.0}};
     world.add({.position = {50.0 + 25.0 * i, i % 2 == 0 ? -5.25 : -1.75}, .speed = 6.0 + i, .behavior = driver});

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
@@ -103,19 +102,11 @@ struct LaneChangeCourse {
     return parameter_list(
         parameter("duration", &LaneChangeCourse::duration, "s", Range{0.5, 30}, "from one centre line to the other"),
         parameter("shortest_duration", &LaneChangeCourse::shortest_duration, "s", Range{0.5, 30},
-                  "if less room is left, and for the way back of an aborted change"),
+                  "if less room is left, and for the way back of an aborted change; at most duration"),
         parameter(
             "minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
             "however slow a car drives; 5 m more for each metre that a longer vehicle's front is farther ahead, 8 m "
             "where there is room"));
-  }
-
-  void check(std::string const& where) const {
-    if (duration < shortest_duration)
-      throw ParameterError(where + ".duration",
-                           "is " + detail::number_text(duration) + " s, less than shortest_duration, " +
-                               detail::number_text(shortest_duration) + " s",
-                           "lower shortest_duration, too, or raise duration");
   }
 
   /// Shortest length of a change [m], however slow a vehicle of this shape drives.
