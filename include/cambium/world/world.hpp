@@ -165,8 +165,8 @@ class World {
   /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) if its lane, route
   /// or parameters are invalid, if a number is not finite, if the speed is outside 0 to 1000 m/s (measured speeds down
   /// to -0.1 count as 0), if the position is more than 5 m outside the nearest lane (of the route, if the agent brings
-  /// one), or if the heading points against the lane's direction. It does not ask whether the place is free: drivers that
-  /// begin in one place stand. O(agents), plus routing.
+  /// one), or if the heading points against the lane's direction. It does not check that the place is free; drivers
+  /// that start on top of each other do not move. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
     if (!spec.way.empty() && !spec.road) {
       auto on_road = spec;

@@ -31,17 +31,15 @@ template <class Law, class Lateral>
   static_assert(
       CarFollowingLaw<Law>,
       "cambium::Driver<Law, Lateral, Heeds...>: the law must be a copyable struct with `static constexpr char const* "
-      "name` "
-      "and `static constexpr auto parameters()`, with public desired_speed, time_headway, minimum_gap, "
-      "maximum_acceleration, comfortable_deceleration and lowest_acceleration, and with `double acceleration(double "
-      "speed, double desired_speed, cambium::Constraint const& leader) const` (see CarFollowingLaw)");
+      "name`, `static constexpr auto parameters()`, public desired_speed, time_headway, minimum_gap, "
+      "maximum_acceleration, comfortable_deceleration and lowest_acceleration, and `double acceleration(double speed, "
+      "double desired_speed, cambium::Constraint const& leader) const` (see CarFollowingLaw)");
   if constexpr (CarFollowingLaw<Law>)
     static_assert(
         LateralPart<Lateral, Limits<Law>>,
         "cambium::Driver<Law, Lateral, Heeds...>: the lateral part, after the law, must be a described struct with "
-        "public "
-        "const functions look(view, memory, limits, dt), drive(view, memory, seen, limits, dt) and counted(), such as "
-        "cambium::KeepLane or cambium::ChangeLanes<Rule> (see Driver)");
+        "public const functions look(view, memory, limits, dt), drive(view, memory, seen, limits, dt) and counted(), "
+        "such as cambium::KeepLane or cambium::ChangeLanes<Rule> (see Driver)");
   return true;
 }
 

@@ -46,7 +46,7 @@ template <class T, class... Parts>
 template <class T, class... Parts>
 using FoundPart = std::tuple_element_t<place_of<T, Parts...>(), std::tuple<Parts...>>;
 
-/// How messages and files call a heed.
+/// A heed that messages and files can name.
 template <class H>
 concept HeedText = std::copyable<H> && std::default_initializable<H> && Described<H> && requires {
   { H::name } -> std::convertible_to<std::string_view>;

@@ -18,8 +18,8 @@ namespace cambium {
 ///   comfortable deceleration (above 0), and lowest acceleration (below 0) [m/s^2];
 /// - `double acceleration(double speed, double desired_speed, Constraint const& leader) const` [m/s^2]: never higher
 ///   than on a free road. Below the lowest, the driver brakes with the lowest; above, nothing bounds it. NaN is driven,
-///   and the step reports it. The leader's gap is above 0, and infinite on a free road. `desired_speed` is the parameter,
-///   or lower where a speed limit is; a law that responds late to a lower one passes the sign too fast.
+///   and the step reports it. The leader's gap is above 0, and infinite on a free road. `desired_speed` is the
+///   parameter, or lower where a speed limit is; a law that responds late to a lower one passes the sign too fast.
 ///
 /// A law may further have
 /// - `static constexpr bool asks_acceleration = true`, if it wants to know a leader's acceleration;
@@ -98,8 +98,7 @@ class Limits {
   [[nodiscard]] Response const& response() const { return response_; }   ///< the law at the driver's speed
 
   /// Keeps a constraint if it is stricter: if the law responds to it with a lower acceleration; among equals, the
-  /// nearer one. Behind a gap that is not above 0, or NaN, laws brake as hard as they can; so they do where the speed
-  /// is NaN.
+  /// nearer one. If the gap is not above 0, or the gap or the speed is NaN, the driver brakes as hard as it can.
   void heed(Constraint const& other) {
     if (std::isnan(other.speed)) [[unlikely]]
       return heed({0.0, 0.0});
@@ -119,8 +118,8 @@ class Limits {
   }
   /// Whether the road is not free.
   [[nodiscard]] bool is_constrained() const { return constraint_.gap != infinite; }
-  /// Keeps a motion over the step if it is shorter. One that leads backwards, or nowhere, stops the vehicle. The
-  /// distance has to be one that the vehicle drives when it changes its speed to that of the motion.
+  /// Keeps a motion over the step if it is shorter. Its distance and its final speed have to agree. A distance of 0 or
+  /// less stops the vehicle.
   void bound(LongitudinalMotion<double> const& motion) {
     bound_ = nearer(bound_, motion.distance <= 0.0 ? LongitudinalMotion<double>{0.0, 0.0} : motion);
   }
