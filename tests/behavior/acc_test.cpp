@@ -96,7 +96,7 @@ TEST_CASE("followers settle at the closed-form gap") {
     double const leader = between(0.2, 0.85, random) * p.desired_speed;
     double gap = between(20, 120, random), acc_gap = gap, v = between(0, 1, random) * p.desired_speed, acc_v = v;
     double const coolness = cb::uniform01(random);
-    cb::AccLaw const law(p, coolness, 0.0, p.desired_speed);
+    cb::AccLaw const law(p, coolness, 0.0, p.desired_speed, cb::Acc::Base::idm);
     for (int i = 0; i < 3000; ++i) {
       auto const m = cb::idm_motion(p, v, gap, leader, 0.2, 1e-6);
       gap += 0.2 * leader - m.distance;
@@ -113,18 +113,19 @@ TEST_CASE("followers settle at the closed-form gap") {
 }
 
 TEST_CASE("the ACC model lies between IDM and the heuristic, closer to the heuristic the cooler the driver") {
+  auto const base = cb::Acc::Base::idm;
   cb::RandomStream random(7, 0, 0);
   int cooler = 0;
   for (int i = 0; i < 50000; ++i) {
     auto const p = any_driver(random);
     double const v = between(0, 40, random);
     cb::Constraint const leader{between(0.5, 100, random), between(0, 40, random), between(-8, 3, random)};
-    double const idm = cb::AccLaw(p, 0.0, v, p.desired_speed)(leader),
+    double const idm = cb::AccLaw(p, 0.0, v, p.desired_speed, base)(leader),
                  cah = cb::cah_acceleration(v, leader, p.maximum_acceleration);
     double const low = std::max(p.lowest_acceleration, std::min(idm, cah)), high = std::max(idm, cah);
     double previous = idm;
     for (double const coolness : {0.3, 0.6, 0.99, 1.0}) {
-      double const a = cb::AccLaw(p, coolness, v, p.desired_speed)(leader);
+      double const a = cb::AccLaw(p, coolness, v, p.desired_speed, base)(leader);
       REQUIRE(std::isfinite(a));
       CHECK(a >= low - 1e-9);
       CHECK(a <= high + 1e-9);
@@ -139,9 +140,10 @@ TEST_CASE("the ACC model lies between IDM and the heuristic, closer to the heuri
 
 TEST_CASE("behind an equally fast vehicle that cuts in, IDM brakes hard and the ACC model calmly") {
   auto const p = cb::presets::kesting_2010_car();
+  auto const base = cb::Acc::Base::idm;
   cb::Constraint const leader{10.0, 25.0, 0.0};
-  double const idm = cb::AccLaw(p, 0.0, 25.0, p.desired_speed)(leader),
-               acc = cb::AccLaw(p, 0.99, 25.0, p.desired_speed)(leader);
+  double const idm = cb::AccLaw(p, 0.0, 25.0, p.desired_speed, base)(leader),
+               acc = cb::AccLaw(p, 0.99, 25.0, p.desired_speed, base)(leader);
   MESSAGE("IDM " << idm << " m/s^2, ACC " << acc << " m/s^2");
   CHECK(idm < -5.0);
   CHECK(acc > -2.5);
@@ -160,7 +162,7 @@ TEST_CASE("from safe gaps the ACC model does not collide with a leader that brak
     for (int i = 0; i * dt < 150.0; ++i) {
       cb::Constraint const seen{gap, leader, i > 0 && leader > 0.0 ? braking : 0.0};
       double const next = std::max(0.0, leader + braking * dt);
-      cb::AccLaw const law(p, coolness, 0.0, p.desired_speed);
+      cb::AccLaw const law(p, coolness, 0.0, p.desired_speed, cb::Acc::Base::idm);
       auto const m = cb::follow_motion(law, v, seen, dt);
       hardest = std::min(hardest, (m.speed - v) / dt);
       gap += 0.5 * (leader + next) * dt - m.distance;
@@ -180,7 +182,7 @@ TEST_CASE("an ACC driver brakes for what comes towards it, whether that accelera
   for (int i = 0; i < 10'000; ++i) {
     auto const driver = any_driver(random);
     double const speed = between(0.5, 30, random), gap = between(0.5, 60, random);
-    cb::AccLaw const law(driver, 0.99, speed, driver.desired_speed);
+    cb::AccLaw const law(driver, 0.99, speed, driver.desired_speed, cb::Acc::Base::idm);
     double const standing = law({gap, 0.0, 0.0});
     double const oncoming = law({gap, between(-20, -0.1, random), between(-5, 5, random)});
     CAPTURE(speed);
@@ -195,9 +197,10 @@ TEST_CASE("extreme inputs give finite accelerations within the bounds") {
     for (double const gap : {-10.0, 0.0, 1e-12, 1.0, 1e9})
       for (double const leader : {0.0, 1e-9, 1000.0})
         for (double const a : {-50.0, 0.0, 1e-9, 50.0})
-          for (double const coolness : {0.0, 0.5, 1.0}) {
-            double const result = cb::AccLaw(p, coolness, v, p.desired_speed)({gap, leader, a});
-            CHECK(result >= p.lowest_acceleration);
-            CHECK(result <= p.highest_acceleration);
-          }
+          for (double const coolness : {0.0, 0.5, 1.0})
+            for (auto const base : {cb::Acc::Base::idm, cb::Acc::Base::improved_idm}) {
+              double const result = cb::AccLaw(p, coolness, v, p.desired_speed, base)({gap, leader, a});
+              CHECK(result >= p.lowest_acceleration);
+              CHECK(result <= p.highest_acceleration);
+            }
 }

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "cambium/behavior/law/follow_motion.hpp"
 #include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/improved_idm.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/portable_math.hpp"
 
@@ -23,57 +25,24 @@ namespace cambium {
   return a - (closing > 0.0 ? closing * closing / (2.0 * gap) : 0.0);
 }
 
-/// Blends IDM's acceleration with that of the heuristic where IDM brakes harder than necessary (eq. 2.6). `coolness`, 0
-/// to 1, says how far the driver trusts the heuristic.
-[[nodiscard]] inline double acc_blend(double idm, double cah, double comfortable_deceleration, double coolness) {
-  if (idm >= cah) return idm;
+class AccLaw;
+
+/// Blends a law's acceleration with that of the heuristic where the law brakes harder than necessary (eq. 2.6).
+/// `coolness`, 0 to 1, says how far the driver trusts the heuristic.
+[[nodiscard]] inline double acc_blend(double base, double cah, double comfortable_deceleration, double coolness) {
+  if (base >= cah) return base;
   double const b = comfortable_deceleration;
-  return (1.0 - coolness) * idm + coolness * (cah + b * portable::tanh((idm - cah) / b));
+  return (1.0 - coolness) * base + coolness * (cah + b * portable::tanh((base - cah) / b));
 }
 
-/// A driver's car following at one speed [m/s] by the ACC model (Kesting, Treiber, Helbing 2010, "Enhanced intelligent
-/// driver model to access the impact of driving strategies on traffic capacity"), within the parameters' bounds; equals
-/// IDM if `coolness` is 0.
-class AccLaw {
- public:
-  static constexpr bool asks_acceleration = true;  ///< of leaders
-
-  /// Of a driver with IDM parameters `p` at `speed` that desires `desired_speed` [m/s]; `coolness` weighs the
-  /// constant-acceleration heuristic, 0 to 1.
-  template <HasIdmParameters P>
-  AccLaw(P const& p, double coolness, double speed, double desired_speed)
-      : terms_(p, desired_speed), comfortable_(p.comfortable_deceleration), coolness_(coolness), speed_(speed) {}
-
-  /// Acceleration behind a leader [m/s^2].
-  [[nodiscard]] double operator()(Constraint const& leader) const { return (*this)(speed_, leader); }
-
-  /// The same at another speed [m/s].
-  [[nodiscard]] double operator()(double speed, Constraint const& leader) const {
-    if (!(leader.gap > 0.0)) return terms_.low;
-    // The blend takes unbounded accelerations.
-    double const idm = terms_.unbounded(terms_.free(speed), speed, leader.gap, leader.speed);
-    if (coolness_ == 0.0 || std::isinf(leader.gap)) return terms_.bounded(idm);
-    return terms_.bounded(acc_blend(idm, cah_acceleration(speed, leader, terms_.maximum), comfortable_, coolness_));
-  }
-
-  [[nodiscard]] double speed() const { return speed_; }                                      ///< [m/s]
-  [[nodiscard]] double desired_speed() const { return 1.0 / terms_.inverse_desired_speed; }  ///< [m/s]
-
-  /// Motion over `dt` [s] behind a leader of constant speed; IDM's own, within `tolerance`, if `coolness` is 0.
-  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
-    if (coolness_ == 0.0) return detail::idm_motion(terms_, speed_, leader.gap, leader.speed, dt, Idm{}.tolerance);
-    return follow_motion(*this, speed_, leader, dt);
-  }
-
- private:
-  IdmTerms<double> terms_;
-  double comfortable_, coolness_, speed_;
-};
-
-/// The ACC model as a driver's law: IDM without the overreaction to small gaps, such as after another vehicle has cut
-/// in, if the leader's acceleration makes them harmless.
+/// The ACC model as a driver's law: without overreaction to small gaps, such as after another vehicle has cut in, if
+/// the leader's acceleration makes them harmless. It is based on IDM as in Kesting, Treiber, Helbing 2010, "Enhanced
+/// intelligent driver model to access the impact of driving strategies on traffic capacity", or on the Improved IDM as
+/// in Treiber, Kesting 2013, section 11.3.8.
 struct Acc {
   static constexpr bool asks_acceleration = true;
+
+  enum class Base : std::uint8_t { idm, improved_idm };
 
   double desired_speed = Idm{}.desired_speed;
   double time_headway = Idm{}.time_headway;
@@ -84,23 +53,86 @@ struct Acc {
   double lowest_acceleration = Idm{}.lowest_acceleration;
   double highest_acceleration = Idm{}.highest_acceleration;
   double coolness = 0.99;
+  Base base = Base::idm;
 
   static constexpr char const* name = "acc";
   static constexpr char const* summary =
-      "IDM, but where it brakes harder than the constant-acceleration heuristic c requires: (1 - coolness) a_IDM + "
-      "coolness (c + b tanh((a_IDM - c) / b))";
-  static constexpr char const* source = "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6";
+      "its base, but where that brakes harder than the constant-acceleration heuristic c requires: (1 - coolness) "
+      "a_base + coolness (c + b tanh((a_base - c) / b))";
+  static constexpr char const* source =
+      "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6; Treiber, Kesting 2013, 11.3.8";
   static constexpr auto parameters() {
     return join_parameters(
         idm_parameters<Acc>(),
         parameter_list(parameter("coolness", &Acc::coolness, "-", Range{0, 1},
-                                 "0: IDM; 1: brakes no harder than the leader's acceleration requires")));
+                                 "0: the base; 1: brakes no harder than the leader's acceleration requires"),
+                       choice("base", &Acc::base, "idm|improved_idm", "the law whose overreaction it prevents")));
   }
 
-  [[nodiscard]] AccLaw at(double speed, double desired) const { return {*this, coolness, speed, desired}; }
-  [[nodiscard]] double acceleration(double speed, double desired, Constraint const& leader) const {
-    return at(speed, desired)(leader);
-  }
+  [[nodiscard]] AccLaw at(double speed, double desired) const;
+  [[nodiscard]] double acceleration(double speed, double desired, Constraint const& leader) const;
 };
+
+/// A driver's car following at one speed [m/s] by the ACC model, within the parameters' bounds; equals the base if
+/// `coolness` is 0.
+class AccLaw {
+ public:
+  static constexpr bool asks_acceleration = true;  ///< of leaders
+
+  /// Of a driver with IDM parameters `p` at `speed` that desires `desired_speed` [m/s]; `coolness` weighs the
+  /// constant-acceleration heuristic, 0 to 1.
+  template <HasIdmParameters P>
+  AccLaw(P const& p, double coolness, double speed, double desired_speed, Acc::Base base)
+      : terms_(p, desired_speed),
+        coolness_(coolness),
+        is_improved_(base == Acc::Base::improved_idm),
+        speed_(speed),
+        free_(free_road(speed)) {}
+
+  /// Acceleration behind a leader [m/s^2].
+  [[nodiscard]] double operator()(Constraint const& leader) const { return respond(leader, free_, speed_); }
+
+  /// The same at another speed [m/s].
+  [[nodiscard]] double operator()(double speed, Constraint const& leader) const {
+    return respond(leader, free_road(speed), speed);
+  }
+
+  [[nodiscard]] double speed() const { return speed_; }                  ///< [m/s]
+  [[nodiscard]] double desired_speed() const { return terms_.desired; }  ///< [m/s]
+
+  /// Motion over `dt` [s] behind a leader of constant speed; IDM's own, within its tolerance, if `coolness` is 0.
+  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
+    if (coolness_ == 0.0 && !is_improved_) {
+      IdmTerms<double> const& terms = terms_;
+      return detail::idm_motion(terms, speed_, leader.gap, leader.speed, dt, Idm{}.tolerance);
+    }
+    return follow_motion(*this, speed_, leader, dt);
+  }
+
+ private:
+  /// For the base: the acceleration on a free road [m/s^2], or for IDM its share [-].
+  [[nodiscard]] double free_road(double speed) const {
+    return is_improved_ ? terms_.free_road(speed) : terms_.free(speed);
+  }
+  [[nodiscard]] double respond(Constraint const& leader, double free, double speed) const {
+    if (!(leader.gap > 0.0)) return terms_.low;
+    // The blend takes unbounded accelerations.
+    double const base =
+        is_improved_ ? terms_.behind(leader, free, speed) : terms_.unbounded(free, speed, leader.gap, leader.speed);
+    if (coolness_ == 0.0 || std::isinf(leader.gap)) return terms_.bounded(base);
+    double const cah = cah_acceleration(speed, leader, terms_.maximum);
+    return terms_.bounded(acc_blend(base, cah, terms_.comfortable, coolness_));
+  }
+
+  ImprovedIdmTerms terms_;
+  double coolness_;
+  bool is_improved_;
+  double speed_, free_;
+};
+
+inline AccLaw Acc::at(double speed, double desired) const { return {*this, coolness, speed, desired, base}; }
+inline double Acc::acceleration(double speed, double desired, Constraint const& leader) const {
+  return at(speed, desired)(leader);
+}
 
 }  // namespace cambium

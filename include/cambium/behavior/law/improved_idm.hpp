@@ -4,11 +4,68 @@
 #include <cmath>
 
 #include "cambium/behavior/law/constraint.hpp"
+#include "cambium/behavior/law/follow_motion.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/portable_math.hpp"
 
 namespace cambium {
+
+/// The Improved Intelligent Driver Model's formula (Treiber, Kesting 2013, section 11.3.7) with all terms that depend
+/// on the parameters alone.
+struct ImprovedIdmTerms : IdmTerms<double> {
+  template <HasIdmParameters P>
+  ImprovedIdmTerms(P const& p, double desired_speed)
+      : IdmTerms(p, desired_speed), desired(desired_speed), comfortable(p.comfortable_deceleration) {}
+
+  /// Acceleration on a free road [m/s^2].
+  [[nodiscard]] double free_road(double speed) const {
+    if (speed <= desired) return maximum * free(speed);
+    return comfortable * (portable::pow(desired / speed, maximum * exponent / comfortable) - 1.0);
+  }
+  /// Acceleration without bounds [m/s^2], where `free` is that on a free road.
+  [[nodiscard]] double behind(Constraint const& leader, double free, double speed) const {
+    double const z = closeness(dynamic_gap(speed, leader.speed), 1.0 / leader.gap);
+    if (z >= 1.0) return std::min(free, 0.0) + maximum * (1.0 - z * z);
+    return free > 0.0 && z > 0.0 ? free * (1.0 - portable::pow(z, 2.0 * maximum / free)) : free;
+  }
+
+  double desired, comfortable;  ///< [m/s, m/s^2]
+};
+
+/// A driver's car following by the Improved Intelligent Driver Model at one speed [m/s], see `ImprovedIdm`.
+class ImprovedIdmLaw {
+ public:
+  static constexpr bool asks_acceleration = false;  ///< of leaders
+
+  template <HasIdmParameters P>
+  ImprovedIdmLaw(P const& p, double speed, double desired_speed)
+      : terms_(p, desired_speed), speed_(speed), free_(terms_.free_road(speed)) {}
+
+  /// Acceleration behind a leader [m/s^2].
+  [[nodiscard]] double operator()(Constraint const& leader) const { return respond(leader, free_, speed_); }
+  /// The same at another speed [m/s].
+  [[nodiscard]] double operator()(double speed, Constraint const& leader) const {
+    return respond(leader, terms_.free_road(speed), speed);
+  }
+
+  [[nodiscard]] double speed() const { return speed_; }                  ///< [m/s]
+  [[nodiscard]] double desired_speed() const { return terms_.desired; }  ///< [m/s]
+
+  /// Motion of a step of `dt` [s] behind a leader of constant speed.
+  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
+    return follow_motion(*this, speed_, leader, dt);
+  }
+
+ private:
+  [[nodiscard]] double respond(Constraint const& leader, double free, double speed) const {
+    return leader.gap > 0.0 ? terms_.bounded(terms_.behind(leader, free, speed)) : terms_.low;
+  }
+
+  ImprovedIdmTerms terms_;
+  double speed_;
+  double free_;  ///< acceleration on a free road [m/s^2]
+};
 
 /// The Improved Intelligent Driver Model as a driver's law: unlike IDM's, its steady gap is that of the time headway at
 /// all speeds below the desired one, and above that it brakes gently (Treiber, Kesting 2013, section 11.3.7).
@@ -29,16 +86,10 @@ struct ImprovedIdm {
   static constexpr char const* source = "Treiber, Kesting 2013, section 11.3.7 (second-hand); defaults: BARK's of IDM";
   static constexpr auto parameters() { return idm_parameters<ImprovedIdm>(); }
 
+  [[nodiscard]] ImprovedIdmLaw at(double speed, double desired) const { return {*this, speed, desired}; }
   /// At `speed` with `desired` speed [m/s], within the bounds [m/s^2].
   [[nodiscard]] double acceleration(double speed, double desired, Constraint const& leader) const {
-    IdmTerms<double> const terms(*this, desired);
-    if (!(leader.gap > 0.0)) return terms.low;
-    double const a = maximum_acceleration, b = comfortable_deceleration;
-    double const free =
-        speed <= desired ? a * terms.free(speed) : -b * (1.0 - portable::pow(desired / speed, a * exponent / b));
-    double const z = terms.closeness(terms.dynamic_gap(speed, leader.speed), 1.0 / leader.gap);
-    if (z >= 1.0) return terms.bounded(std::min(free, 0.0) + a * (1.0 - z * z));
-    return terms.bounded(free > 0.0 && z > 0.0 ? free * (1.0 - portable::pow(z, 2.0 * a / free)) : free);
+    return at(speed, desired)(leader);
   }
 };
 
