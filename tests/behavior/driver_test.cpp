@@ -51,7 +51,7 @@ TEST_CASE("a heed is found by its type or a base of it, read, and replaced in a 
   CHECK(Mobil{}.heed<Bends>().lateral_acceleration == 3.0);
   CHECK(IdmLaneTracking{}.heed<Bends>().lateral_acceleration == 3.4);
   static_assert(!Heeding<Bends>::contains<Signals>);
-  static_assert(sizeof(Driver<Idm, KeepLane>) == sizeof(Idm) + sizeof(KeepLane));
+  static_assert(sizeof(Driver<Idm, KeepLane>) == sizeof(Idm) + sizeof(KeepLane) + sizeof(double));
   static_assert(sizeof(IdmClassic::Memory) == sizeof(KeepLane::Memory));
 }
 
@@ -228,7 +228,7 @@ TEST_CASE("limits lose no NaN, in any order; a gap or a speed that is NaN stops 
     CHECK(std::isnan(limits.acceleration()));
     limits.bound(first ? LongitudinalMotion<double>{nan, nan} : LongitudinalMotion<double>{1.0, 2.0});
     limits.bound(first ? LongitudinalMotion<double>{1.0, 2.0} : LongitudinalMotion<double>{nan, nan});
-    CHECK(std::isnan(limits.within({1.5, 2.0}).distance));
+    CHECK(std::isnan(limits.within({1.5, 2.0}, 0.1).distance));
 
     Idm const idm;
     Limits<Idm> blind(idm, 10.0, 15.0);

@@ -62,6 +62,7 @@ struct ViewArchetype {
   [[nodiscard]] AgentId id() const;
   [[nodiscard]] double time() const;                               ///< of the frame that is seen [s]
   [[nodiscard]] State const& state() const;                        ///< own state, as observed
+  [[nodiscard]] double last_acceleration() const;                  ///< own, over the last step [m/s^2]
   [[nodiscard]] geometry::Shape const& shape() const;              ///< own shape
   [[nodiscard]] Dynamics const& dynamics() const;                  ///< own vehicle model
   [[nodiscard]] RandomStream random(std::uint32_t purpose) const;  ///< own stream for (seed, agent, step, purpose)

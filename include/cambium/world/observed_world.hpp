@@ -51,6 +51,7 @@ class ObservedWorld {
   [[nodiscard]] double time() const { return world_->frame().time; }
   [[nodiscard]] AgentId id() const { return own_->id; }
   [[nodiscard]] decltype(auto) state() const { return observed(slot_); }
+  [[nodiscard]] double last_acceleration() const { return record(slot_).action.acceleration; }
   [[nodiscard]] geometry::Shape const& shape() const { return own_->shape; }
   [[nodiscard]] Dynamics const& dynamics() const { return own_->dynamics; }
   [[nodiscard]] Goal const& goal() const { return world_->roster().goals[index_of(slot_)]; }

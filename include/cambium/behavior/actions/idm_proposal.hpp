@@ -133,7 +133,7 @@ struct BasicProposal {
     heeds.heed(view, memory.heeds, limits, dt);
     auto motion = limits.motion(dt);
     if (lateral.leaves_room && next) motion = lateral.course.leave_room(view, *next, motion, dt);
-    return plan_to_center(view, memory.lateral.change.bend, limits.within(motion), dt, offset);
+    return plan_to_center(view, memory.lateral.change.bend, limits.within(motion, dt), dt, offset);
   }
 };
 

@@ -232,7 +232,7 @@ struct BasicMacroActions {
     if (keeps_gap && !change.active())
       if (auto const next = view.ahead({.merging = limits.merging}))
         motion = course.leave_room(view, *next, motion, dt);
-    return limits.within(motion);
+    return limits.within(motion, dt);
   }
 
   /// Motion by the acceleration of an action, no faster than the limits that it heeds.

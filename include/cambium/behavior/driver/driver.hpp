@@ -76,7 +76,7 @@ void check_law(Law const& law, std::string const& where) {
 /// - `Lateral`: `KeepLane`, `TrackLine`, `ChangeLanes<Rule>`, or a described struct of your own with
 ///   - `look(view, memory, limits, dt)`: decides on the course, adds who is in its way to the limits, and
 ///     returns what `drive` should know;
-///   - `drive(view, memory, seen, limits, dt)`: the plan that drives `limits.within(limits.motion(dt))` there;
+///   - `drive(view, memory, seen, limits, dt)`: the plan that drives `limits.within(limits.motion(dt), dt)` there;
 ///   - `Merging counted() const`: how road users count that merge into the lane.
 /// - `Heeds`: see `Heeding`.
 template <class Law, class Lateral, class... Heeds>
@@ -86,6 +86,7 @@ struct Driver {
   Law law{};
   Lateral lateral{};
   [[no_unique_address]] Heeding<Heeds...> heeds{};
+  double jerk = 1e6;  ///< see `Limits::within` [m/s^3]
 
   /// The same driver, heeding more.
   template <class... More>
@@ -119,7 +120,9 @@ struct Driver {
     using P = Driver;
     return parameter_list(parameter("law", &P::law, "by which it follows"),
                           parameter("lateral", &P::lateral, "where across the road it drives"),
-                          parameter("heeds", &P::heeds, "what it heeds besides"));
+                          parameter("heeds", &P::heeds, "what it heeds besides"),
+                          parameter("jerk", &P::jerk, "m/s^3", Range{0.1, 1e6},
+                                    "highest change of the acceleration, unless it has to brake hard; people: 2.5"));
   }
 
   void check(std::string const& where) const { detail::check_law(law, where); }
@@ -146,6 +149,8 @@ struct Driver {
     double const speed = std::max(0.0, view.state().speed);
     Limits<Law> limits(law, speed, heeds.desired_speed(law, view, speed), heeds.merging(view, lateral.counted()));
     limits.gives_way = heeds_conflicts;
+    limits.last_acceleration = view.last_acceleration();
+    limits.jerk = jerk;
     auto const seen = lateral.look(view, memory.lateral, limits, dt);
     heeds.heed(view, memory.heeds, limits, dt);
     return lateral.drive(view, memory.lateral, seen, limits, dt);

@@ -132,15 +132,27 @@ class Limits {
   }
   /// The law's motion over `dt` [s], without the bound.
   [[nodiscard]] LongitudinalMotion<double> motion(double dt) const { return response_.motion(constraint_, dt); }
-  /// `motion`, or the bound if that is shorter.
-  [[nodiscard]] LongitudinalMotion<double> within(LongitudinalMotion<double> const& motion) const {
-    return nearer(motion, bound_);
+  /// `motion` over `dt` [s], or the bound if that is shorter, as smoothly as the driver can: its acceleration changes
+  /// by no more than `jerk`. Where more than the comfortable deceleration is wanted it brakes the faster, as one who
+  /// has to hurry does.
+  [[nodiscard]] LongitudinalMotion<double> within(LongitudinalMotion<double> const& motion, double dt) const {
+    constexpr double urgency = 4.0;  // [1/s] more jerk for what is wanted beyond the comfortable deceleration
+    auto const wanted = nearer(motion, bound_);
+    double const v = response_.speed(), a = (wanted.speed - v) / dt;
+    double const beyond = std::max(0.0, -law_->comfortable_deceleration - a);
+    double const low = last_acceleration - (jerk + urgency * beyond) * dt, high = last_acceleration + jerk * dt;
+    if (!(a < low) && !(a > high)) return wanted;
+    double const smooth = std::clamp(a, low, high), end = v + smooth * dt;
+    if (end > 0.0) return {0.5 * (v + end) * dt, end};
+    return {smooth < 0.0 ? v * v / (-2.0 * smooth) : 0.0, 0.0};
   }
 
   Merging merging = Merging::counts;  ///< how road users count that merge into the lane
   bool gives_way = false;             ///< it heeds conflicts
   double highest_speed = infinite;    ///< in the bends within the braking distance [m/s]
   bool is_at_light = false;           ///< it stands before a light that stops it
+  double last_acceleration = 0.0;     ///< of the driver, over the last step [m/s^2]
+  double jerk = infinite;             ///< highest change of its acceleration while it need not hurry [m/s^3]
 
  private:
   [[nodiscard]] static LongitudinalMotion<double> nearer(LongitudinalMotion<double> const& motion,

@@ -197,7 +197,7 @@ struct ChangeLanes {
                                  Limits const& limits, double dt) const {
     auto motion = limits.motion(dt);
     if (leaves_room && leader && !memory.change.active()) motion = course.leave_room(view, *leader, motion, dt);
-    auto const bounded = limits.within(motion);
+    auto const bounded = limits.within(motion, dt);
     if (memory.lane.aside != 0) [[unlikely]] {
       if (!memory.change.active()) {
         memory.change.bend = 0.0f;

@@ -105,7 +105,7 @@ struct KeepLane {
   template <class View, class Limits>
   [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, std::monostate, Limits const& limits,
                                  double dt) const {
-    return along_lane(view, limits.within(limits.motion(dt)), dt, memory);
+    return along_lane(view, limits.within(limits.motion(dt), dt), dt, memory);
   }
 
   /// The same for a driver that passes nobody within its lane.

@@ -84,7 +84,7 @@ struct TrackLine {
     auto segment = view.place().segment;
     auto x = view.state();
     x.speed = std::max(0.0, x.speed);
-    double const acceleration = (limits.within(limits.motion(dt)).speed - x.speed) / dt;
+    double const acceleration = (limits.within(limits.motion(dt), dt).speed - x.speed) / dt;
     Plan<View> plan;
     for (int i = 0; i < steps; ++i) {
       auto axle = front_axle(line, x, wheel_base, segment);
