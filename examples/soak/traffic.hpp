@@ -142,7 +142,8 @@ struct Mix {
 
 /// A driver with this car following. On motorways it keeps to the outer lanes.
 [[nodiscard]] inline Driver make_driver(cb::Idm const& idm, bool is_heavy, bool is_motorway, cb::RandomStream& random) {
-  Driver driver{.law = idm};
+  Driver driver;
+  cb::presets::follow_as(idm, driver.law);
   driver.lateral.others = cb::presets::kesting_2010_car();
   driver.lateral.trucks = cb::presets::kesting_2010_truck();
   if (!is_motorway) return driver;

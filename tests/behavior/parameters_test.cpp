@@ -14,5 +14,5 @@ TEST_CASE("defaults, units and ranges are those of the file beside") {
       cb::DriverActions<cb::Intersection>, cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal, cb::Idm,
       cb::ImprovedIdm, cb::Acc, cb::LaneChangeCourse, cb::LaneEnd, cb::Yielding<>, cb::RssParameters,
       cb::MotionPrimitive, cb::MacroAction, cb::SocialForceParameters, cb::CrossingParameters, cb::FreeSpace,
-      cb::RemainingLength, cb::SpeedLimitAtLeast>("behavior");
+      cb::RemainingLength, cb::SpeedLimitAtLeast, cb::Population>("behavior");
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 #include "cambium/behavior/drivers.hpp"
 #include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -62,6 +64,21 @@ namespace cambium::presets {
           .lowest_acceleration = -8.0};
 }
 
+/// Gives a law the parameters of `idm`; a law other than IDM those that every law has.
+template <CarFollowingLaw Law>
+constexpr void follow_as(Idm const& idm, Law& law) {
+  if constexpr (std::is_same_v<Law, Idm>) {
+    law = idm;
+  } else {
+    law.desired_speed = idm.desired_speed;
+    law.time_headway = idm.time_headway;
+    law.minimum_gap = idm.minimum_gap;
+    law.maximum_acceleration = idm.maximum_acceleration;
+    law.comfortable_deceleration = idm.comfortable_deceleration;
+    law.lowest_acceleration = idm.lowest_acceleration;
+  }
+}
+
 /// What a driver's temperament means for a whole driver; the defaults are those of `normal`. Car following as in the
 /// presets of the same name; politeness, threshold and safe braking of lane changes around the values of Kesting,
 /// Treiber, Helbing 2007 (politeness 0: egoistic, up to 0.5: cooperative; 0.1 m/s^2; 4 m/s^2); speeds around the limit
@@ -74,10 +91,14 @@ struct Temperament {
   double lane_change_braking = 4.0;   ///< `ChangeLanes::safe_deceleration`; 0.5 m/s^2 more abort one [m/s^2]
   double lateral_acceleration = 3.0;  ///< `Bends::lateral_acceleration` [m/s^2]
   double signal_braking = 3.0;        ///< `Signals::safe_deceleration`: higher, it stops at yellow more often [m/s^2]
+  double bias = 0.0;                  ///< `MobilRule::bias` [m/s^2]
+  double change_duration = 4.0;       ///< `LaneChangeCourse::duration` [s]
+  double others_headway = 1.5;        ///< `ChangeLanes::others`: the headway that it expects others to keep [s]
   double merging_headway = 1.0;       ///< `KeepLane::merging_headway` [s]
   double late_at_red = 0.0;           ///< `Signals::late_at_red` [s]
   double speed_factor = 1.0;          ///< `SpeedLimit::factor` [-]
   double time_margin = 1.0;           ///< `Conflicts::time_margin` [s]
+  double jerk = 1e6;                  ///< `Driver::jerk` [m/s^3]
 
   /// `driver` with this temperament: sets those of the above that its parts have. A law other than IDM gets what every
   /// law has.
@@ -85,6 +106,7 @@ struct Temperament {
   [[nodiscard]] constexpr Driver<Law, Lateral, Heeds...> of(Driver<Law, Lateral, Heeds...> driver) const {
     give(driver.law);
     give(driver.lateral);
+    driver.jerk = jerk;
     if constexpr (Heeding<Heeds...>::template contains<Bends>)
       driver.template heed<Bends>().lateral_acceleration = lateral_acceleration;
     if constexpr (Heeding<Heeds...>::template contains<Signals>) {
@@ -110,15 +132,9 @@ struct Temperament {
   }
 
  private:
-  constexpr void give(Idm& law) const { law = idm; }
   template <CarFollowingLaw Law>
   constexpr void give(Law& law) const {
-    law.desired_speed = idm.desired_speed;
-    law.time_headway = idm.time_headway;
-    law.minimum_gap = idm.minimum_gap;
-    law.maximum_acceleration = idm.maximum_acceleration;
-    law.comfortable_deceleration = idm.comfortable_deceleration;
-    law.lowest_acceleration = idm.lowest_acceleration;
+    follow_as(idm, law);
   }
   constexpr void give(KeepLane& lateral) const {
     lateral.merging_headway = merging_headway;
@@ -129,6 +145,8 @@ struct Temperament {
   constexpr void give(ChangeLanes<Rule>& lateral) const {
     give(lateral.keep);
     give(lateral.rule);
+    lateral.course.duration = change_duration;
+    lateral.others.time_headway = others_headway;
     lateral.safe_deceleration = lane_change_braking;
     lateral.abort_deceleration = lane_change_braking + 0.5;
   }
@@ -136,6 +154,7 @@ struct Temperament {
   constexpr void give(MobilRule<Filters...>& rule) const {
     rule.politeness = politeness;
     rule.threshold = threshold;
+    rule.bias = bias;
   }
   template <class Other>
   constexpr void give(Other&) const {}

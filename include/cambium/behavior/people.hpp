@@ -1,0 +1,127 @@
+#pragma once
+
+#include <string>
+
+#include "cambium/behavior/presets.hpp"
+#include "cambium/core/distribution.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/random.hpp"
+
+namespace cambium {
+
+/// How the drivers of one kind of vehicle differ from each other: each parameter with its distribution. The defaults
+/// are car drivers on motorways.
+struct Population {
+  Distribution desired_speed = ClippedNormal{33.0, 6.8, 27.0, 55.0};
+  Distribution speed_factor = ClippedNormal{1.04, 0.1, 0.8, 1.4};
+  Distribution time_headway = ClippedNormal{0.97, 0.35, 0.5, 2.5};
+  Distribution minimum_gap = ClippedNormal{2.0, 0.5, 1.0, 4.0};
+  Distribution maximum_acceleration = ClippedNormal{1.2, 0.25, 0.7, 2.0};
+  Distribution comfortable_deceleration = ClippedNormal{2.0, 0.4, 1.2, 3.0};
+  Distribution politeness = Uniform{0.0, 0.1};
+  Distribution threshold = Uniform{0.2, 0.35};
+  Distribution change_duration = ClippedNormal{5.8, 1.4, 3.0, 9.0};
+  Distribution lateral_acceleration = ClippedNormal{2.7, 0.4, 1.8, 4.0};
+  Distribution time_margin = ClippedNormal{1.0, 0.25, 0.5, 2.0};
+  double bias = 0.2;
+  double others_headway = 0.8;
+  double lowest_acceleration = -8.0;
+  double jerk = 2.5;
+
+  static constexpr char const* name = "population";
+  static constexpr auto parameters() {
+    using P = Population;
+    return parameter_list(
+        parameter("desired_speed", &P::desired_speed, "m/s", {}, "where there is no limit"),
+        parameter("speed_factor", &P::speed_factor, "-", {},
+                  "speed on a free road, in shares of the limit; who desires much without a limit does so with one"),
+        parameter("time_headway", &P::time_headway, "s", {}, "time gap kept to the leader"),
+        parameter("minimum_gap", &P::minimum_gap, "m", {}, "gap kept at standstill"),
+        parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", {}, "from rest on a free road"),
+        parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", {},
+                  "that the driver finds normal"),
+        parameter("politeness", &P::politeness, "-", {}, "of lane changes, see `MobilRule`"),
+        parameter("threshold", &P::threshold, "m/s^2", {}, "advantage for which it changes lanes"),
+        parameter("change_duration", &P::change_duration, "s", {}, "of a lane change"),
+        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", {}, "highest in bends"),
+        parameter("time_margin", &P::time_margin, "s", {}, "between two vehicles at one place in a junction"),
+        parameter("bias", &P::bias, "m/s^2", Range{-10, 10}, "in favour of the outer lane, see `MobilRule`"),
+        parameter("others_headway", &P::others_headway, "s", Range{0, 20},
+                  "time gap with which they expect others to put up after a lane change"),
+        parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, -0.01}, "hardest braking"),
+        parameter("jerk", &P::jerk, "m/s^3", Range{0.1, 1e6},
+                  "highest change of the acceleration, unless they have to brake hard"));
+  }
+
+  /// Throws `ParameterError` if what is drawn can be out of the range of a driver's parameter.
+  void check(std::string const& where) const {
+    check_draws(desired_speed, {0.1, 100}, "desired_speed", "m/s", where);
+    check_draws(speed_factor, {0.1, 3}, "speed_factor", "-", where);
+    check_draws(time_headway, {0, 20}, "time_headway", "s", where);
+    check_draws(minimum_gap, {0, 100}, "minimum_gap", "m", where);
+    check_draws(maximum_acceleration, {0.01, 20}, "maximum_acceleration", "m/s^2", where);
+    check_draws(comfortable_deceleration, {0.01, 20}, "comfortable_deceleration", "m/s^2", where);
+    check_draws(politeness, {0, 1}, "politeness", "-", where);
+    check_draws(threshold, {0, 20}, "threshold", "m/s^2", where);
+    check_draws(change_duration, {0.5, 30}, "change_duration", "s", where);
+    check_draws(lateral_acceleration, {0.1, 50}, "lateral_acceleration", "m/s^2", where);
+    check_draws(time_margin, {0, 20}, "time_margin", "s", where);
+  }
+
+  /// The next of these people. Takes ten draws.
+  [[nodiscard]] presets::Temperament draw(RandomStream& random) const {
+    presets::Temperament one;
+    auto same = random;  // one draw for both: fast is fast
+    one.idm.desired_speed = desired_speed(same);
+    one.speed_factor = speed_factor(random);
+    one.idm.time_headway = time_headway(random);
+    one.idm.minimum_gap = minimum_gap(random);
+    one.idm.maximum_acceleration = maximum_acceleration(random);
+    one.idm.comfortable_deceleration = comfortable_deceleration(random);
+    one.idm.lowest_acceleration = lowest_acceleration;
+    one.jerk = jerk;
+    one.politeness = politeness(random);
+    one.threshold = threshold(random);
+    one.change_duration = change_duration(random);
+    one.bias = bias;
+    one.others_headway = others_headway;
+    one.lateral_acceleration = lateral_acceleration(random);
+    one.time_margin = time_margin(random);
+    return one;
+  }
+};
+
+namespace presets {
+
+/// Drivers of cars on motorways.
+[[nodiscard]] inline Population motorway_cars() { return {}; }
+
+/// Drivers of lorries on motorways.
+[[nodiscard]] inline Population motorway_trucks() {
+  Population p;
+  p.desired_speed = ClippedNormal{24.2, 1.0, 22.0, 26.0};
+  p.bias = 0.6;
+  p.speed_factor = ClippedNormal{1.0, 0.04, 0.9, 1.1};
+  p.time_headway = ClippedNormal{1.7, 0.4, 0.9, 3.0};
+  p.minimum_gap = ClippedNormal{3.0, 0.7, 1.5, 5.0};
+  p.maximum_acceleration = ClippedNormal{0.8, 0.15, 0.5, 1.2};
+  p.comfortable_deceleration = ClippedNormal{1.6, 0.3, 1.0, 2.2};
+  p.lateral_acceleration = ClippedNormal{2.0, 0.2, 1.5, 2.6};
+  p.lowest_acceleration = -6.0;
+  return p;
+}
+
+/// Drivers of cars in town.
+[[nodiscard]] inline Population town_cars() {
+  Population p;
+  p.time_headway = ClippedNormal{1.3, 0.4, 0.5, 2.6};
+  p.speed_factor = ClippedNormal{1.02, 0.12, 0.7, 1.4};
+  return p;
+}
+
+/// Drivers of lorries and buses in town.
+[[nodiscard]] inline Population town_trucks() { return motorway_trucks(); }
+
+}  // namespace presets
+
+}  // namespace cambium
