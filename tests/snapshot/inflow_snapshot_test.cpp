@@ -177,7 +177,7 @@ TEST_CASE("inflows of earlier versions load") {
   CHECK(files >= 2);
   CHECK(for_each_golden("inflow_1", [&](std::string const& path) {
           Run run(road, 1);
-          says("(law, lateral, heeds); read it with the program that wrote it",
+          says("(law, lateral, heeds, jerk); read it with the program that wrote it",
                [&] { load_snapshot(path, run.inflow); });
         }) == 2);
 }

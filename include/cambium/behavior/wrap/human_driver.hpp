@@ -109,9 +109,9 @@ struct HumanDriver {
                             parameter("speed", &P::speed, "m/s", any_finite, "own, before the last step"),
                             parameter("gap_error", &P::gap_error, "-", any_finite, "process of the error in gaps"),
                             parameter("rate_error", &P::rate_error, "-", any_finite, "likewise in rates"),
-                            parameter("noise", &P::noise, "-", any_finite, "likewise in the acceleration"),
                             parameter("has_begun", &P::has_begun, "it has driven a step"),
-                            parameter("looks_away", &P::looks_away, "from the road"));
+                            parameter("looks_away", &P::looks_away, "from the road"),
+                            parameter("noise", &P::noise, "-", any_finite, "process of the error in acceleration"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;
