@@ -164,6 +164,30 @@ TEST_CASE("what every law has is checked, though a law describes less") {
   CHECK(world.size() == 0);
 }
 
+TEST_CASE("the acceleration changes no faster than the jerk permits, but faster the harder a driver has to brake") {
+  constexpr double dt = 0.1, speed = 10.0;
+  Idm const law{.comfortable_deceleration = 2.0};
+  Limits<Idm> limits(law, speed, 15.0);
+  limits.jerk = 2.0;
+  limits.last_acceleration = 0.5;
+  auto const acceleration = [&](double wanted) {
+    double const end = speed + wanted * dt;
+    return (limits.within({0.5 * (speed + end) * dt, end}, dt).speed - speed) / dt;
+  };
+  CHECK(acceleration(0.6) == doctest::Approx(0.6));
+  CHECK(acceleration(1.5) == doctest::Approx(0.7));
+  CHECK(acceleration(-1.5) == doctest::Approx(0.3));
+  CHECK(acceleration(-4.0) == doctest::Approx(-0.5));  // 2 m/s^2 beyond comfort: 8 m/s^3 more
+  CHECK(acceleration(-9.0) < -2.0);
+  Limits<Idm> stops(law, 0.05, 15.0);
+  stops.jerk = 2.0;
+  stops.last_acceleration = -1.0;
+  auto const last = stops.within({0.0, 0.0}, dt);
+  CHECK(last.speed == 0.0);
+  CHECK(last.distance >= 0.0);
+  CHECK(last.distance < 0.05 * dt);
+}
+
 TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; NaN is reported", Law, Idm, ImprovedIdm, Acc, Gipps) {
   using Wishful = Driver<Law, KeepLane, Wish, SpeedLimit>;
   auto const drive = [](double desired, double& speed) {

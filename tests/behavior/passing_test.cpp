@@ -41,13 +41,7 @@ Behavior cyclist(double desired_speed = 5.0) {
   auto idm = cb::presets::cyclist();
   idm.desired_speed = desired_speed;
   Behavior behavior;
-  auto& law = behavior.law;
-  law.desired_speed = idm.desired_speed;
-  law.time_headway = idm.time_headway;
-  law.minimum_gap = idm.minimum_gap;
-  law.maximum_acceleration = idm.maximum_acceleration;
-  law.comfortable_deceleration = idm.comfortable_deceleration;
-  law.lowest_acceleration = idm.lowest_acceleration;
+  cb::presets::follow_as(idm, behavior.law);
   if constexpr (requires { behavior.lateral.keep; })
     behavior.lateral.keep = cb::presets::cyclist_lane();
   else
