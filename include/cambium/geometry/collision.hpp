@@ -131,6 +131,11 @@ template <bool closed>
   return best;
 }
 
+/// The point of the polygon nearest to `p`; `p` itself if it lies inside. O(n).
+[[nodiscard]] inline Point nearest_point(Polygon const& polygon, Point const& p) {
+  return polygon.contains(p) ? p : nearest_border_point(polygon, p);
+}
+
 /// Distance [m] from `p` to the polygon, 0 inside. O(n).
 [[nodiscard]] inline double distance(Polygon const& polygon, Point const& p) {
   return polygon.contains(p) ? 0.0 : polygon.distance_to_border(p);

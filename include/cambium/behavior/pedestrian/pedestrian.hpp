@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/behavior/pedestrian/crossing.hpp"
 #include "cambium/behavior/pedestrian/social_force.hpp"
+#include "cambium/behavior/pedestrian/surroundings.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -20,42 +20,13 @@
 
 namespace cambium {
 
-namespace detail {
-
-/// Road users and objects around a pedestrian, without heap.
-struct Surroundings {
-  static constexpr std::size_t most = 32;
-
-  struct Other {
-    geometry::OrientedBox box;
-    PlaneVector<double> velocity;
-    double distance;
-    double radius;  ///< of a round body; 0 for a rectangle
-  };
-
-  std::array<Other, most> others;
-  std::array<geometry::Polygon const*, most> objects;
-  std::size_t other_count = 0, object_count = 0;
-  double sight_cosine = 0.0;  ///< cosine of half the angle in which others count fully
-
-  /// Adds a road user; keeps the nearest ones if there are too many.
-  void add(Other const& other) {
-    if (other_count < most) {
-      others[other_count++] = other;
-      return;
-    }
-    auto const farthest = std::max_element(others.begin(), others.end(),
-                                           [](Other const& a, Other const& b) { return a.distance < b.distance; });
-    if (other.distance < farthest->distance) *farthest = other;
-  }
-};
-
-}  // namespace detail
-
 /// A pedestrian that walks along its road corridor by social forces (see `SocialForceParameters`). It follows its way
 /// at its desired speed, keeps its distance from others, from the way's borders and from static objects, and crosses
 /// lanes when their traffic leaves a gap (see `CrossingParameters`). Others are assumed to move straight on within a
 /// step. The way is a free corridor, or lanes for pedestrians.
+///
+/// Whatever pushes it, it does not walk into vehicles and objects, nor to where a vehicle can no longer stop, nor past
+/// the kerb at which it waits: there it slides along, or stands. This holds while the others move as assumed.
 ///
 /// The forces bend its course; its heading follows its velocity. It plans the motion of a point mass and ignores its
 /// vehicle model (to execute its plans through the dynamics, give it a `KinematicPoint`).
@@ -93,7 +64,7 @@ struct Pedestrian {
   [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
     auto const& start = view.state();
     detail::Surroundings around;
-    gather(view, around);
+    gather(view, dt, around);
     around.sight_cosine = portable::cos(0.5 * social.sight_angle);
     Walk walk{{start.x, start.y}, velocity_of(start), view.place()};
     double const stop = detail::distance_to_stop(crossing, social, view, start.speed) + walk.at.s;
@@ -118,9 +89,10 @@ struct Pedestrian {
   }
 
   template <class View>
-  void gather(View const& view, detail::Surroundings& around) const {
+  void gather(View const& view, double dt, detail::Surroundings& around) const {
     geometry::Point const own{view.state().x, view.state().y};
-    view.around(range, [&](RoadUser const& other) {
+    double const reach = std::max(range, body_of(view) + social.highest_speed_ratio * social.desired_speed * dt);
+    view.around(reach, [&](RoadUser const& other) {
       constexpr double largest_body = 1.0;    // [m]
       auto const& state = view.state(other);  // a value if the observer is not perfect
       auto const& shape = view.shape(other);
@@ -130,9 +102,15 @@ struct Pedestrian {
       around.add({box, velocity, geometry::distance(box, own), size <= largest_body ? 0.5 * size : 0.0});
     });
     view.for_each_object([&](ObjectId, geometry::Polygon const& outline) {
-      if (around.object_count < detail::Surroundings::most && outline.bounding_box().grown(range).contains(own))
+      if (around.object_count < detail::Surroundings::most && outline.bounding_box().grown(reach).contains(own))
         around.objects[around.object_count++] = &outline;
     });
+  }
+
+  /// Radius [m] that holds its body however it is turned.
+  template <class View>
+  [[nodiscard]] double body_of(View const& view) const {
+    return std::max(body_radius, view.shape().radius());
   }
 
   template <class View>
@@ -162,13 +140,14 @@ struct Pedestrian {
     double const distance = ahead.norm();
     Vector const desired = distance > 1e-9 ? (speed / distance) * ahead : Vector{};
     auto force = push + limited(force_of(around, ahead, walk) + borders(way, sides, stop, walk));
-    walk.velocity = social_velocity(social, walk.velocity, desired, force, h);
-    walk.position = walk.position + h * walk.velocity;
+    auto const velocity = social_velocity(social, walk.velocity, desired, force, h);
+    around.advance(h);
+    auto const& along = way.center.segments()[walk.at.segment];
+    auto const next = around.way_past(walk.position, walk.position + h * velocity, body_of(view),
+                                      {{along.ux, along.uy}, stop - walk.at.s});
+    walk.velocity = (1.0 / h) * (next - walk.position);
+    walk.position = next;
     walk.at = map::locate(view.road(), walk.at.corridor, {walk.position.x, walk.position.y, 0.0}, walk.at);
-    for (std::size_t i = 0; i < around.other_count; ++i) {
-      around.others[i].box.x += h * around.others[i].velocity.x;
-      around.others[i].box.y += h * around.others[i].velocity.y;
-    }
   }
 
   /// A stride ends at the range of the force, because nothing farther counts.
