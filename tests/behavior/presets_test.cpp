@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include "lane_traffic_fixtures.hpp"
@@ -22,6 +23,41 @@ TEST_CASE("presets of pedestrians and cyclists are valid; a cyclist brakes no ha
   auto const bicycle = cb::geometry::bicycle();
   CHECK(bicycle_dynamics().wheel_base < bicycle.length());
   CHECK(bicycle.front - bicycle_dynamics().wheel_base == doctest::Approx(bicycle.rear));  // wheels of equal size
+}
+
+TEST_CASE("a cyclist close behind one that brakes stops, if its brakes suffice") {
+  auto const road = support::straight_road(1, 400.0);
+  auto const bicycle = cb::geometry::bicycle();
+  double least = 1e9;
+  for (double const dt : {0.05, 0.1, 0.2, 0.3, 0.5})
+    for (std::uint32_t seed = 0; seed < 60; ++seed) {
+      CAPTURE(dt);
+      CAPTURE(seed);
+      cb::RandomStream random(seed, 7, 0);
+      double const speed = between(3.0, 8.0, random), others = std::min(8.0, speed + between(-1.0, 1.0, random));
+      double const gap = between(0.5, 3.0, random), braking = between(1.0, 3.0, random);
+      auto const dynamics = cb::presets::bicycle_dynamics();
+      double const harder = -dynamics.lowest_acceleration - braking, closing = std::max(0.0, speed - others);
+      if (closing * closing > 2.0 * harder * (gap - 0.1)) continue;
+      Traffic<cb::IdmClassic, cb::ConstantAcceleration> world(road);
+      auto const ahead = world.add({.position = {100, -1.75},
+                                    .speed = others,
+                                    .shape = bicycle,
+                                    .behavior = cb::ConstantAcceleration{.acceleration = -braking},
+                                    .dynamics = dynamics});
+      auto const id =
+          world.add({.position = {100 - bicycle.length() - gap, -1.75},
+                     .speed = speed,
+                     .shape = bicycle,
+                     .behavior = cb::IdmClassic{.law = cb::presets::cyclist(), .jerk = seed % 2 ? 2.5 : 1e6},
+                     .dynamics = dynamics});
+      while (world.time() < 10.0) {
+        drive_safely(world, 1, dt);
+        least = std::min(least, world.state(ahead).x - world.state(id).x - bicycle.length());
+      }
+      CHECK(world.state(id).speed < 0.3);
+    }
+  CHECK(least < 0.5);  // some came close
 }
 
 TEST_CASE("presets of drivers are valid and drive as their names say") {

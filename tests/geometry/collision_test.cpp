@@ -159,6 +159,7 @@ TEST_CASE("distances and nearest points are those of the nearest of many points 
     REQUIRE(distance(b, in_box) < 1e-12);
     REQUIRE((on_border - p).norm() == doctest::Approx(polygon.distance_to_border(p)).epsilon(1e-9));
     REQUIRE(polygon.distance_to_border(on_border) < 1e-12);
+    REQUIRE(nearest_point(polygon, p) == (polygon.contains(p) ? p : on_border));
   }
 }
 
