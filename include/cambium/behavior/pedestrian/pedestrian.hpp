@@ -141,11 +141,11 @@ struct Pedestrian {
     Vector const desired = distance > 1e-9 ? (speed / distance) * ahead : Vector{};
     auto force = push + limited(force_of(around, ahead, walk) + borders(way, sides, stop, walk));
     auto const velocity = social_velocity(social, walk.velocity, desired, force, h);
-    around.advance(h);
+    auto const wanted = walk.position + h * velocity;
     auto const& along = way.center.segments()[walk.at.segment];
-    auto const next = around.way_past(walk.position, walk.position + h * velocity, body_of(view),
-                                      {{along.ux, along.uy}, stop - walk.at.s});
-    walk.velocity = (1.0 / h) * (next - walk.position);
+    around.advance(h);
+    auto const next = around.way_past(walk.position, wanted, body_of(view), {{along.ux, along.uy}, stop - walk.at.s});
+    walk.velocity = velocity + (1.0 / h) * (next - wanted);
     walk.position = next;
     walk.at = map::locate(view.road(), walk.at.corridor, {walk.position.x, walk.position.y, 0.0}, walk.at);
   }

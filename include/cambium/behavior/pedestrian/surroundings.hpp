@@ -72,14 +72,17 @@ struct Surroundings {
         if (objects[i]->bounding_box().grown(body).intersects(box_around(from, to)))
           is_clear &= keep_beside(*objects[i], from, to, body);
       double const over = dot(to - from, kerb.across) - std::max(0.0, kerb.room);
-      if (over > rounding) to = to - over * kerb.across, is_clear = false;
+      if (over > rounding) {
+        to = to - over * kerb.across;
+        is_clear = false;
+      }
       if (is_clear) return to;
     }
     return from;
   }
 
  private:
-  static constexpr double rounding = 1e-9;  // [m]
+  static constexpr double rounding = 1e-7;  // [m] coordinates may have seven digits before the point
 
   [[nodiscard]] static geometry::Box box_around(Vector const& a, Vector const& b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
