@@ -22,9 +22,8 @@ def crossing(kind):
         along = (round(math.cos(0.5 * math.pi * i)), round(math.sin(0.5 * math.pi * i)))
         nodes.append(element("node", id=i + 1, x=length * along[0], y=length * along[1]))
         for name, ends in ((f"{i + 1}i", (i + 1, "c")), (f"{i + 1}o", ("c", i + 1))):
-            edges.append(
-                element("edge", id=name, from_=ends[0], to=ends[1], numLanes=1, width=3.5, speed=TOWN_LIMIT, priority=1 if i % 2 else 2)
-            )
+            rank = 1 if i % 2 else 2
+            edges.append(element("edge", id=name, from_=ends[0], to=ends[1], speed=TOWN_LIMIT, width=3.5, priority=rank))
     return lambda simulation: simulation.build(nodes, edges)
 
 
@@ -36,11 +35,11 @@ def roundabout(simulation):
         nodes += [element("node", id=f"{kind}{i + 1}", x=x, y=y) for kind, (x, y) in zip("cn", at)]
         arc = [0.5 * math.pi * (i + step / 9) for step in range(10)]
         shape = " ".join(f"{radius * math.cos(a):.3f},{radius * math.sin(a):.3f}" for a in arc)
-        common = {"numLanes": 1, "priority": 1}
+        center, outside, next_ = f"c{i + 1}", f"n{i + 1}", f"c{(i + 1) % 4 + 1}"
         edges += [
-            element("edge", id=f"{i + 1}i", from_=f"n{i + 1}", to=f"c{i + 1}", speed=TOWN_LIMIT, **common),
-            element("edge", id=f"{i + 1}o", from_=f"c{i + 1}", to=f"n{i + 1}", speed=TOWN_LIMIT, **common),
-            element("edge", id=f"r{i + 1}", from_=f"c{i + 1}", to=f"c{(i + 1) % 4 + 1}", speed=30 / 3.6, shape=shape, **common),
+            element("edge", id=f"{i + 1}i", from_=outside, to=center, speed=TOWN_LIMIT),
+            element("edge", id=f"{i + 1}o", from_=center, to=outside, speed=TOWN_LIMIT),
+            element("edge", id=f"r{i + 1}", from_=center, to=next_, speed=30 / 3.6, shape=shape),
         ]
     ring = element("roundabout", nodes="c1 c2 c3 c4", edges="r1 r2 r3 r4")
     simulation.build(nodes, edges, more=[ring])
@@ -88,10 +87,15 @@ class Net:
                     for b in self.segments(theirs):
                         at = crossing_of(*a[3:], *b[3:])
                         if at:
-                            return [(one[0], one[1] + (one[2] - one[1]) * share) for one, share in zip((a, b), at)]
+                            places = [one[1] + (one[2] - one[1]) * share for one, share in zip((a, b), at)]
+                            return [self.within(one[0], place) for one, place in zip((a, b), places)]
                 if to == also_to:
-                    return [(lanes[-1], self.lengths[lanes[-1]]) for lanes in (mine, theirs)]
+                    return [self.within(lanes[-1], math.inf) for lanes in (mine, theirs)]
         return None
+
+    def within(self, lane, place):
+        """A place at which SUMO accepts a detector."""
+        return lane, min(place, self.lengths[lane] - 0.05)
 
 
 def crossing_of(a, b, c, d):
@@ -124,8 +128,9 @@ Decision = collections.namedtuple("Decision", "rejected accepted")  # gaps [s]
 
 
 class Junction:
-    """Streams through a junction that `build(simulation)` makes, and when their vehicles pass, in order of the line. Those of
-    streams 1, 2, ... that cross or join stream 0 are its rivals."""
+    """Streams through a junction that `build(simulation)` makes, and when their vehicles pass. Those of streams 1, 2, ...
+    that cross or join stream 0 are its rivals. The line is where SUMO's vehicles wait: for some who turn left, within the
+    junction."""
 
     def __init__(self, settings, folder, build, streams, duration, seed, types=CARS, plan=()):
         self.simulation = simulation = Simulation(folder, settings)
@@ -133,10 +138,9 @@ class Junction:
         net = Net(simulation.path("net.xml"))
         self.places = {}  # of detectors: what they note -> name
         for i, one in enumerate(streams):
-            lane = net.through(*one.edges[:2])[0]
+            *before, lane = [f"{one.edges[0]}_0", *net.through(*one.edges[:2])]
             self.detect(("line", i), lane, min(WHEELS, 0.5 * net.lengths[lane]))
-        before = f"{streams[0].edges[0]}_0"
-        self.detect(("first", 0), before, net.lengths[before] - 3.0)
+            self.detect(("first", i), before[-1], max(0.0, net.lengths[before[-1]] - 3.0))
         self.rivals = []
         for i in range(1, len(streams)):
             met = net.meeting(streams[0].edges, streams[i].edges)

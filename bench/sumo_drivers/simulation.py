@@ -6,12 +6,15 @@ import pathlib
 import shutil
 import statistics
 import subprocess
-import sys
 import xml.etree.ElementTree as xml
 
 
 class Error(Exception):
     """What is wrong, where, and what to do."""
+
+
+class NothingObserved(Exception):
+    """Why a quantity has no value: what it is a mean of did not occur."""
 
 
 def program(name):
@@ -98,7 +101,8 @@ class Simulation:
         """Drives `traffic`, elements of a file of routes in order of departure, for `duration` [s]."""
         words = ["-n", self.path("net.xml"), "-r", self.write("routes.xml", "routes", traffic)]
         words += ["-a", self.write("additional.xml", "additional", [*self.detectors, *additional])]
-        words += ["--end", duration, "--seed", seed % 2**31, "--step-length", self.settings.step, "--eager-insert", "true"]
+        words += ["--end", duration, "--seed", seed % 2**31, "--step-length", self.settings.step]
+        words += ["--eager-insert", "true", "--max-depart-delay", 60]  # of a queue that does not end, the rest stays away
         words += ["--time-to-teleport", "-1", "--no-step-log", "true", "--no-warnings", "true", "--xml-validation", "never"]
         if trajectories:
             words += ["--fcd-output", self.path("trajectories.xml"), "--fcd-output.attributes", "pos,speed,angle,lane"]
@@ -111,9 +115,8 @@ class Simulation:
         found = []
         for _, one in xml.iterparse(self.path("passages.xml")):
             if one.tag == "instantOut" and one.get("state") == "enter" and float(one.get("time")) >= since:
-                found.append(
-                    Passage(float(one.get("time")), float(one.get("speed")), one.get("id"), one.get("type"), one.get("vehID"))
-                )
+                numbers = (float(one.get(key)) for key in ("time", "speed"))
+                found.append(Passage(*numbers, *(one.get(key) for key in ("id", "type", "vehID"))))
             one.clear()
         return sorted(found)
 
@@ -139,14 +142,14 @@ class Simulation:
 
 def flow(name, route, per_hour, end, type_="car", **more):
     """Vehicles with exponential headways from time 0 to `end` [s]."""
-    return element(
-        "flow", id=name, type=type_, route=route, begin=0, end=end, period=f"exp({per_hour / 3600.0})", departSpeed="avg", **more
-    )
+    # A speed of "avg" lets more enter than "max", the desired one, which waits for long gaps.
+    period = f"exp({per_hour / 3600.0})"
+    return element("flow", id=name, type=type_, route=route, begin=0, end=end, period=period, departSpeed="avg", **more)
 
 
 def space_mean_speed(passages):
     """[m/s]: the harmonic mean of those that pass."""
-    return len(passages) / sum(1.0 / max(0.1, one.speed) for one in passages)
+    return 1.0 / mean([1.0 / max(0.1, one.speed) for one in passages])
 
 
 def follower_headways(passages, longest=3.0):
@@ -161,17 +164,17 @@ def follower_headways(passages, longest=3.0):
 
 
 def mean(values):
+    if not values:
+        raise NothingObserved("nothing occurred that it is a mean of")
     return statistics.fmean(values)
 
 
 def quantile(values, share):
     """With linear interpolation between the sorted values."""
+    if not values:
+        raise NothingObserved("nothing occurred that it is a quantile of")
     values = sorted(values)
     at = share * (len(values) - 1)
     low = int(at)
     high = min(low + 1, len(values) - 1)
     return values[low] + (at - low) * (values[high] - values[low])
-
-
-if sys.version_info < (3, 9):
-    raise Error("this needs Python 3.9 or newer")
