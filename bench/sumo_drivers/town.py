@@ -182,7 +182,7 @@ def turns(settings, folder):
 
 def errors(settings, folder):
     """Three junctions with all their turns: who collides, and who brakes by half of g."""
-    duration, demand, hard, once = 3600.0, 250.0, 4.9, 10.0
+    sampled, duration, demand, hard, once = 0.2, 3600.0, 250.0, 4.9, 10.0  # [s, s, 1/h, m/s^2, s]
     kilometres, crashed, near = 0.0, 0, 0
     plan = [(25.0, "r", "G"), (YELLOW, "r", "y"), (2.0, "r", "r"), (25.0, "G", "r"), (YELLOW, "y", "r"), (2.0, "r", "r")]
     for number, (build, phases) in enumerate(
@@ -210,8 +210,10 @@ def errors(settings, folder):
         seen = {}
         for vehicle, now in simulation.samples():
             before, braked = seen.get(vehicle, (now, -once))
+            if 0.0 < now.time - before.time < sampled - 1e-6:
+                continue
             kilometres += 0.5e-3 * (before.speed + now.speed) * (now.time - before.time)
-            if before.speed - now.speed > hard * settings.step and now.time - braked > once:
+            if before.speed - now.speed > hard * (now.time - before.time) and now.time - braked > once:
                 near, braked = near + 1, now.time
             seen[vehicle] = now, braked
     return [crashed / (kilometres / 1e6), near / (kilometres / 1e6)]
