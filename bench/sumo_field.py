@@ -110,7 +110,7 @@ def fill(said, path, settings):
 def in_words(value):
     if value is None:
         return "–"
-    return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+    return f"{value:.0f}" if abs(value) >= 1000.0 else f"{value:.4g}"
 
 
 def table(rows):

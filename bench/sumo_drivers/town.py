@@ -182,7 +182,7 @@ def turns(settings, folder):
 
 def errors(settings, folder):
     """Three junctions with all their turns: who collides, and who brakes by half of g."""
-    sampled, duration, demand, hard, once = 0.2, 3600.0, 250.0, 4.9, 10.0  # [s, s, 1/h, m/s^2, s]
+    sampled, duration, demand, hard, once = 0.2, 5400.0, 250.0, 4.9, 10.0  # [s, s, 1/h, m/s^2, s]
     kilometres, crashed, near = 0.0, 0, 0
     plan = [(25.0, "r", "G"), (YELLOW, "r", "y"), (2.0, "r", "r"), (25.0, "G", "r"), (YELLOW, "y", "r"), (2.0, "r", "r")]
     for number, (build, phases) in enumerate(
@@ -356,7 +356,7 @@ def takes_gap(simulation, net, wait, gap, seed, factor):
 
 def shortest_gap(simulation, net, wait, seed, factor):
     """The shortest gap [s] that the driver takes after it has waited."""
-    low, high = 1.5, 15.0
+    low, high = 1.5, 20.0
     while high - low > 0.1:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if takes_gap(simulation, net, wait, middle, seed, factor) else (middle, high)

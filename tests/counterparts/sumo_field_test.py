@@ -114,7 +114,7 @@ class Table(WithFolder):
             sumo_field.table(rows).splitlines()[2:],
             [
                 "| a\\|b | 2150 to 2450 | **1690** | 2216 | - | somebody |",
-                "| c | 0.3 to 0.7 | – | **0.225** | - | somebody |",
+                "| c | 0.3 to 0.7 | – | **0.2251** | - | somebody |",
                 "| d | 0 to 2 | 2 | **2.01** | - | somebody |",
                 "| e | 2 | 3 | – | - | somebody |",
             ],
