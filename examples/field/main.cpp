@@ -1,5 +1,5 @@
 // Measures the drivers of `presets` as observers measure people, and prints both side by side: capacity, speed and
-// headway on motorways, lane changes, waves.
+// headway on motorways, lane changes, waves; gaps, capacity, lights and stop signs in town.
 
 #include <algorithm>
 #include <cstdint>
@@ -66,6 +66,8 @@ nlohmann::ordered_json json_of(Settings const& settings, std::vector<Row> const&
 
 std::vector<Row> measure(Settings const& settings) {
   auto experiments = motorway_experiments();
+  for (auto const& more : {town_experiments(), junction_experiments()})
+    experiments.insert(experiments.end(), more.begin(), more.end());
   std::string known;
   for (auto const& one : experiments) known += (known.empty() ? "'" : ", '") + one.name + "'";
   if (!settings.only.empty()) std::erase_if(experiments, [&](auto const& one) { return one.name != settings.only; });

@@ -22,6 +22,10 @@ Sim::AgentSpec People::draw(cb::RandomStream& random) const {
           .behavior = driver};
 }
 
+Human with_errors(Driver const& driver) {
+  return {.nominal = driver, .attentive = 3.2, .looks_away = 0.65, .noise = 0.21};
+}
+
 std::shared_ptr<cb::Map const> straight_road(double length, std::size_t lanes, double limit, double drop) {
   using namespace cb::map;
   RoadPlan road{.id = "1", .line = lay_from({}, {{length}}), .type = "motorway"};
@@ -110,8 +114,8 @@ Moments moments(std::vector<double> const& values) {
   return {mean, std::sqrt(squares / n)};
 }
 
-std::vector<double> follower_headways(std::vector<Passage> const& passages) {
-  constexpr double longest = 3.0, most = 2.0;  // [s, m/s]
+std::vector<double> follower_headways(std::vector<Passage> const& passages, double longest) {
+  constexpr double most = 2.0;  // [m/s]
   std::vector<double> found;
   std::array<std::optional<Passage>, 8> last{};
   for (auto const& passage : passages) {

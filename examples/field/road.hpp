@@ -13,6 +13,7 @@
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
+#include "cambium/world/extern_world.hpp"
 #include "cambium/world/world.hpp"
 
 // Traffic on straight roads, and what detectors on them measure.
@@ -33,6 +34,10 @@ struct People {
   /// The next vehicle, at the speed that it desires.
   [[nodiscard]] Sim::AgentSpec draw(cb::RandomStream& random) const;
 };
+
+/// The same driver with a human's errors, who looks away from the road for 17 % of the time, 5 % of these glances
+/// longer than 2 s.
+[[nodiscard]] Human with_errors(Driver const& driver);
 
 /// A straight road of `length` [m] with `lanes` lanes and a speed `limit` [m/s], infinite: none. Beyond `drop` [m], if
 /// that is above 0, the rightmost lane is missing.
@@ -94,10 +99,12 @@ struct Moments {
 };
 [[nodiscard]] Moments moments(std::vector<double> const& values);
 
-/// Time headways [s] of followers: of vehicles up to 3 s behind another one, and about as fast (2 m/s).
-[[nodiscard]] std::vector<double> follower_headways(std::vector<Passage> const& passages);
+/// Time headways [s] of followers: of vehicles up to `longest` [s] behind another one, and about as fast (2 m/s).
+[[nodiscard]] std::vector<double> follower_headways(std::vector<Passage> const& passages, double longest = 3.0);
 
 /// Speed [m/s] averaged over the road, as density needs it: the harmonic mean of those that pass.
 [[nodiscard]] double space_mean_speed(std::vector<Passage> const& passages);
 
 }  // namespace field
+
+CAMBIUM_EXTERN_WORLD(field::Sim);

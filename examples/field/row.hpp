@@ -29,5 +29,9 @@ struct Experiment {
 
 /// On motorways.
 [[nodiscard]] std::vector<Experiment> motorway_experiments();
+/// In town: streets, lights, signs, turns, errors.
+[[nodiscard]] std::vector<Experiment> town_experiments();
+/// At junctions without lights: gaps, and what passes.
+[[nodiscard]] std::vector<Experiment> junction_experiments();
 
 }  // namespace field

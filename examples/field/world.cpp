@@ -1,0 +1,3 @@
+#include "road.hpp"
+
+CAMBIUM_INSTANTIATE_WORLD(field::Sim);
