@@ -221,47 +221,4 @@ std::vector<double> follow_ups(Junction const& junction) {
   return found;
 }
 
-double critical_gap(std::vector<Decision> const& all) {
-  auto const below = [](double gap, double mu, double sigma) {  // share of the drivers with a lower critical gap
-    return gap > 0.0 ? 0.5 * std::erfc((mu - cb::portable::log(gap)) / (sigma * std::sqrt(2.0))) : 0.0;
-  };
-  auto const likelihood = [&](double mu, double sigma) {
-    double sum = 0.0;
-    for (auto const& [rejected, accepted] : all) {
-      double const most = std::min(rejected, 0.99 * accepted);  // some let a longer gap pass than they take
-      sum += cb::portable::log(std::max(1e-12, below(accepted, mu, sigma) - below(most, mu, sigma)));
-    }
-    return sum;
-  };
-  double mu = cb::portable::log(5.0), sigma = 0.3, best = likelihood(mu, sigma);
-  for (double step = 0.2; step > 1e-4;) {
-    bool is_better = false;
-    for (auto const& [a, b] : {std::pair{step, 0.0}, {-step, 0.0}, {0.0, step}, {0.0, -step}}) {
-      if (sigma + b < 0.02) continue;
-      if (double const here = likelihood(mu + a, sigma + b); here > best) {
-        best = here;
-        mu += a;
-        sigma += b;
-        is_better = true;
-        break;
-      }
-    }
-    if (!is_better) step *= 0.5;
-  }
-  return cb::portable::exp(mu + 0.5 * sigma * sigma);
-}
-
-double gap_capacity(double flow, double critical, double follow_up) {
-  double const q = flow / 3600.0;
-  if (q == 0.0) return 3600.0 / follow_up;
-  return flow * cb::portable::exp(-q * critical) / (1.0 - cb::portable::exp(-q * follow_up));
-}
-
-double quantile(std::vector<double> values, double p) {
-  std::sort(values.begin(), values.end());
-  double const at = p * static_cast<double>(values.size() - 1);
-  auto const i = static_cast<std::size_t>(at);
-  return values[i] + (at - static_cast<double>(i)) * (values[std::min(i + 1, values.size() - 1)] - values[i]);
-}
-
 }  // namespace field

@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "gaps.hpp"
 #include "road.hpp"
 
 // Traffic at junctions with one lane each way, and what observers beside the road note.
@@ -90,29 +91,11 @@ class Junction {
   std::vector<double> became_first_;
 };
 
-/// What a driver at the head of a queue decided.
-struct Decision {
-  double rejected{};  ///< the longest gap that it let pass [s], 0: none
-  double accepted{};  ///< the gap that it took [s]
-};
-
 /// The decisions of those in stream 0 that were first at the line when the gap that they took began. A gap is the time
 /// from one rival to the next, at the places where their ways meet.
 [[nodiscard]] std::vector<Decision> decisions(Junction const& junction);
 
 /// Headways [s] at the line of those in stream 0 that follow each other in the same gap.
 [[nodiscard]] std::vector<double> follow_ups(Junction const& junction);
-
-/// The mean of the drivers' critical gaps [s], lognormally distributed, by maximum likelihood from the longest gap that
-/// each rejected and the one that it accepted (Troutbeck 1992, "Estimating the critical acceptance gap from traffic
-/// movements").
-[[nodiscard]] double critical_gap(std::vector<Decision> const& all);
-
-/// Capacity [1/h] of a stream that gives way to `flow` [1/h] with these critical and follow-up headways [s]: HCM 7th
-/// ed., eq. 20-18 (Harders 1968).
-[[nodiscard]] double gap_capacity(double flow, double critical, double follow_up);
-
-/// The value below which a share `p` of the values lies.
-[[nodiscard]] double quantile(std::vector<double> values, double p);
 
 }  // namespace field

@@ -1,17 +1,12 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <optional>
 #include <string>
 #include <unordered_map>
-#include <utility>
 #include <variant>
 #include <vector>
 
-#include "cambium/core/portable_math.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
 
@@ -124,32 +119,6 @@ Sim::AgentSpec free_driver(cb::RandomStream& random) {
   return spec;
 }
 
-/// Where a share `p` of the values of x stops, by logistic regression on who has `stopped` at which x.
-class Logistic {
- public:
-  Logistic(std::vector<double> const& x, std::vector<bool> const& stopped) {
-    for (int i = 0; i < 50; ++i) {  // Newton; the small curvature keeps the slope finite where all agree
-      double ga = 0.0, gb = -1e-3 * b_, aa = 1e-6, ab = 0.0, bb = 1e-3;
-      for (std::size_t k = 0; k < x.size(); ++k) {
-        double const p = 1.0 / (1.0 + cb::portable::exp(-(a_ + b_ * x[k]))), w = p * (1.0 - p);
-        double const error = (stopped[k] ? 1.0 : 0.0) - p;
-        ga += error;
-        gb += error * x[k];
-        aa += w;
-        ab += w * x[k];
-        bb += w * x[k] * x[k];
-      }
-      double const det = aa * bb - ab * ab, scale = std::min(1.0, 2.0 * det / (std::abs(aa * gb - ab * ga) + 1e-12));
-      a_ += scale * (bb * ga - ab * gb) / det;
-      b_ += scale * (aa * gb - ab * ga) / det;
-    }
-  }
-  [[nodiscard]] double at(double p) const { return (cb::portable::log(p / (1.0 - p)) - a_) / b_; }
-
- private:
-  double a_ = 0.0, b_ = 0.0;
-};
-
 /// Drivers alone on their way to a light that turns yellow when they are up to 8 s before it.
 std::vector<Row> yellow(std::uint64_t seed) {
   constexpr double distance = 180.0, nearest = 0.5, farthest = 8.0;
@@ -215,7 +184,7 @@ std::vector<Row> turns(std::uint64_t seed) {
 
 /// Human drivers on three junctions: who collides, and who brakes by half of g.
 std::vector<Row> errors(std::uint64_t seed) {
-  constexpr double dt = 0.2, duration = 3600.0, demand = 250.0, hard = 4.9, once = 10.0;  // [s, 1/h, m/s^2, s]
+  constexpr double dt = 0.2, duration = 5400.0, demand = 250.0, hard = 4.9, once = 10.0;  // [s, 1/h, m/s^2, s]
   double kilometres = 0.0, crashed = 0.0, near = 0.0;
   for (auto const& map :
        {crossing({light, light, light, light}), crossing({priority, stop_sign, priority, stop_sign}), roundabout()}) {
@@ -261,8 +230,8 @@ std::vector<Row> errors(std::uint64_t seed) {
   }
   auto const of = " of human drivers, in " + std::to_string(std::lround(kilometres)) + " km";
   double const millions = kilometres / 1e6;
-  return {{"crashed vehicles" + of, 1.5, 5.0, "1/Gm", "Kusano et al. 2024", crashed / millions, true},
-          {"hard braking (0.5 g)" + of, 50, 100, "1/Gm", "100-Car, SHRP2; unverified", near / millions, true}};
+  return {{"crashed vehicles" + of, 1.5, 5.0, "1/Mkm", "Kusano et al. 2024", crashed / millions, true},
+          {"hard braking (0.5 g)" + of, 50, 100, "1/Mkm", "100-Car, SHRP2; unverified", near / millions, true}};
 }
 
 }  // namespace
