@@ -49,7 +49,8 @@ struct Approach {
 /// Queues at a light: headways from the fifth vehicle on, and what the first four lose.
 std::vector<Row> saturation(std::uint64_t seed) {
   constexpr double green = 40.0, cycle = 80.0;
-  constexpr std::size_t cycles = 40, first = 4;
+  constexpr std::size_t cycles = 40;
+  constexpr std::ptrdiff_t first = 4;
   Approach approach(green, cycle, cb::TrafficSource::saturated, seed);
   approach.junction.drive(cycle * static_cast<double>(cycles));
   std::vector<double> headways, starts;
@@ -58,10 +59,9 @@ std::vector<Row> saturation(std::uint64_t seed) {
     double const begin = cycle * static_cast<double>(i);
     auto const from = std::lower_bound(times.begin(), times.end(), begin);
     auto const to = std::lower_bound(from, times.end(), begin + green);
-    auto const count = static_cast<std::size_t>(to - from);
-    if (count <= first) continue;
-    starts.push_back(from[first - 1] - begin);
-    for (std::size_t k = first; k < count; ++k) headways.push_back(from[k] - from[k - 1]);
+    if (to - from <= first) continue;
+    starts.push_back(*(from + first - 1) - begin);
+    for (auto at = from + first; at != to; ++at) headways.push_back(*at - *(at - 1));
   }
   double const headway = moments(headways).mean;
   return {{"saturation flow of a lane at green", 1750, 1950, "1/h", "HCM 7th ed., ch. 19", 3600.0 / headway},
