@@ -25,6 +25,7 @@
 #include "cambium/geometry/convex_hull.hpp"
 #include "cambium/geometry/frenet.hpp"
 #include "cambium/geometry/line.hpp"
+#include "cambium/geometry/moving_box.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/pose.hpp"

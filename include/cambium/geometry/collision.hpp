@@ -30,6 +30,19 @@ namespace cambium::geometry {
   return along_b & across_b;
 }
 
+/// A lower bound of the distance [m] between two rectangles that is positive if they are disjoint, and else at most 0:
+/// the widest gap between their projections on the four side directions.
+[[nodiscard]] inline double separation(OrientedBox const& a, OrientedBox const& b) {
+  double const dx = b.x - a.x, dy = b.y - a.y;
+  double const cos = std::abs(a.cos * b.cos + a.sin * b.sin);
+  double const sin = std::abs(a.cos * b.sin - a.sin * b.cos);
+  double const along_a = std::abs(a.cos * dx + a.sin * dy) - a.half_length - b.half_length * cos - b.half_width * sin;
+  double const across_a = std::abs(a.cos * dy - a.sin * dx) - a.half_width - b.half_length * sin - b.half_width * cos;
+  double const along_b = std::abs(b.cos * dx + b.sin * dy) - b.half_length - a.half_length * cos - a.half_width * sin;
+  double const across_b = std::abs(b.cos * dy - b.sin * dx) - b.half_width - a.half_length * sin - a.half_width * cos;
+  return std::max(std::max(along_a, across_a), std::max(along_b, across_b));
+}
+
 namespace detail {
 
 /// Whether the segment a-b shares a point with the rectangle; if `closed` is false, with its interior. Uses separating
@@ -139,6 +152,15 @@ template <bool closed>
 /// Distance [m] from `p` to the polygon, 0 inside. O(n).
 [[nodiscard]] inline double distance(Polygon const& polygon, Point const& p) {
   return polygon.contains(p) ? 0.0 : polygon.distance_to_border(p);
+}
+
+/// Distance [m] between a rectangle and a polygon, 0 if they intersect. O(n).
+[[nodiscard]] inline double distance(OrientedBox const& box, Polygon const& polygon) {
+  if (intersects(box, polygon)) return 0.0;
+  double nearest = std::numeric_limits<double>::infinity();  // at a corner of one of them
+  for (auto const& corner : box.corners()) nearest = std::min(nearest, polygon.distance_to_border(corner));
+  for (auto const& corner : polygon.points()) nearest = std::min(nearest, distance(box, corner));
+  return nearest;
 }
 
 }  // namespace cambium::geometry
