@@ -3,6 +3,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -246,4 +247,160 @@ TEST_CASE("with a look-ahead, a driver is at fault for the collisions that const
   CHECK_FALSE(cb::AtFaultCollision{.blameless_speed = 10.5, .look_ahead = 5.0}(world, rear));
   world.add_object(rectangle(60, -2, 1, 1));
   CHECK(cb::AtFaultCollision{.look_ahead = 4.0}.among(world, rear, {}));
+}
+
+namespace {
+
+/// A straight road, x from 0 to 400 m, and ways of their own beside and across it.
+struct Stage {
+  Sim world;
+
+  explicit Stage(int lanes = 1) : world(straight_road(lanes, 400)) {}
+
+  AgentId on_road(double x, double speed, double y = -1.75) {
+    return world.add({.position = {x, y}, .speed = speed, .behavior = cb::ConstantAcceleration{}});
+  }
+
+  /// Drives along the straight way from `from` to `to`, the reference point `s` [m] after `from`.
+  AgentId on_way(cb::geometry::Point from, cb::geometry::Point to, double s, double speed) {
+    auto const along = (to - from).normalized();
+    return world.add({.position = from + s * along,
+                      .heading = std::atan2(along.y(), along.x()),
+                      .speed = speed,
+                      .behavior = cb::ConstantAcceleration{},
+                      .way = {from, to}});
+  }
+
+  struct Seen {
+    bool at_frames, in_steps;
+  };
+
+  /// Steps for `duration` [s]: whether boxes touch at a frame, and whether `AnyCollision` says so after a step.
+  Seen run(double dt, double duration) {
+    Seen seen{};
+    for (double time = 0.0; time < duration; time += dt) {
+      REQUIRE(world.step(dt));
+      seen.at_frames = seen.at_frames || brute_any(world);
+      seen.in_steps = seen.in_steps || cb::AnyCollision{}(world);
+    }
+    return seen;
+  }
+};
+
+/// Two cars at right angles, the second one across the road. Its front is at the middle of the lane `lead` [s] before
+/// that of the first one is at the middle of its way; both get there after `time` [s].
+Stage crossing(double time, double lead, std::size_t bystanders = 0) {
+  Stage stage;
+  double const front = cb::geometry::car().front, speed = 15.0, across = 12.0;
+  stage.on_road(200.0 - front - speed * time, speed);
+  stage.on_way({200, -100}, {200, 100}, 98.25 - front - across * (time - lead), across);
+  for (std::size_t i = 0; i < bystanders; ++i) stage.on_way({-900, -900}, {900, -900}, 10.0 * double(i), 0.0);
+  return stage;
+}
+
+/// Distance of the two cars of `crossing` over the whole run [m]. Exact to millimetres; they drive at constant speeds.
+double least_distance(double time, double lead) {
+  auto stage = crossing(time, lead);
+  double least = 1e9;
+  for (double t = 0.0; t < time + 2.0; t += 1e-3) {
+    auto const after = [&](cb::Slot slot) { return cb::detail::box_after(stage.world, slot, t); };
+    least = std::min(least, cb::geometry::separation(after(cb::Slot{0}), after(cb::Slot{1})));
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("no drive-through at a crossing is missed, however long the steps are and wherever they begin") {
+  for (double const dt : {0.2, 0.5, 1.0, 2.0}) {
+    int hidden = 0;
+    for (std::uint32_t i = 0; i < 80; ++i) {
+      cb::RandomStream random(5, i, 0);
+      double const time = 3.0 + dt * cb::uniform01(random), lead = between(-0.05, 0.05, random);
+      auto const seen = crossing(time, lead, i % 2 ? 40 : 0).run(dt, 6.0);
+      CHECK(seen.in_steps);
+      hidden += !seen.at_frames;
+    }
+    MESSAGE("steps of " << dt << " s: " << hidden << " of 80 drive-throughs lie between two frames");
+    CHECK((hidden > 0) == (dt >= 0.5));
+  }
+}
+
+TEST_CASE("vehicles that cross the same place one after the other do not collide between frames") {
+  int clear = 0, hits = 0;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    cb::RandomStream random(6, i, 0);
+    double const dt = between(0.3, 1.5, random), time = 3.0 + cb::uniform01(random), lead = between(-1.0, 1.0, random);
+    double const distance = least_distance(time, lead);
+    if (std::abs(distance) < 0.02) continue;
+    CHECK(crossing(time, lead, i % 2 ? 40 : 0).run(dt, 6.0).in_steps == (distance < 0.0));
+    ++(distance < 0.0 ? hits : clear);
+  }
+  CHECK(clear > 50);
+  CHECK(hits > 50);
+}
+
+TEST_CASE("vehicles that pass each other at 10 cm do not collide, whatever the step; at -10 cm they do") {
+  double const width = cb::geometry::car().width();
+  for (double const dt : {0.1, 0.5, 1.0, 2.0})
+    for (double const gap : {0.1, -0.1})
+      for (bool const oncoming : {false, true}) {
+        Stage stage;
+        stage.on_road(20.0, 25.0);
+        double const y = -1.75 + width + gap;
+        if (oncoming)
+          stage.on_way({390, y}, {10, y}, 100.0, 20.0);
+        else
+          stage.on_way({10, y}, {390, y}, 60.0, 10.0);
+        CHECK(stage.run(dt, 8.0).in_steps == (gap < 0.0));
+      }
+}
+
+TEST_CASE(
+    "vehicles that swap places in a step collide; so does one that drives through one that stands, or an object") {
+  Stage swap, standing, object;
+  swap.on_road(100.0, 20.0);
+  swap.on_way({390, -1.75}, {10, -1.75}, 270.0, 20.0);
+  standing.on_road(100.0, 20.0);
+  standing.on_road(110.0, 0.0);
+  object.on_road(100.0, 20.0);
+  object.world.add_object(rectangle(112, -2, 0.5, 0.5));
+  for (auto* const stage : {&swap, &standing, &object}) {
+    auto const seen = stage->run(1.0, 0.5);
+    CHECK_FALSE(seen.at_frames);
+    CHECK(seen.in_steps);
+    CHECK_FALSE(stage->run(1.0, 0.5).in_steps);  // only the last step counts
+  }
+}
+
+TEST_CASE("only agents that were driven from one frame to the next sweep what is between") {
+  Stage stage;
+  auto const a = stage.on_road(100.0, 20.0);
+  stage.on_road(110.0, 0.0);
+  REQUIRE(stage.world.step(1.0));
+  REQUIRE(stage.world.before_step());
+  REQUIRE(cb::AnyCollision{}(stage.world));
+
+  SUBCASE("not copies and restored worlds") {
+    Sim const copy = stage.world;
+    CHECK_FALSE(copy.before_step());
+    CHECK_FALSE(cb::AnyCollision{}(copy));
+    stage.world.restore(copy.frame());
+    CHECK_FALSE(cb::AnyCollision{}(stage.world));
+  }
+  SUBCASE("not worlds that agents entered or left") {
+    stage.on_road(300.0, 0.0);
+    CHECK_FALSE(cb::AnyCollision{}(stage.world));
+  }
+  SUBCASE("not an agent that was set") {
+    stage.world.set_state(a, {.x = 130.0, .y = -1.75, .speed = 20.0});
+    CHECK_FALSE(cb::AnyCollision{}(stage.world));
+    stage.world.set_state(a, {.x = 100.0, .y = -1.75, .speed = 20.0});
+    REQUIRE(stage.world.step(1.0));
+    CHECK(cb::AnyCollision{}(stage.world));
+  }
+  SUBCASE("an invalid step is none") {
+    CHECK_FALSE(stage.world.step(-1.0));
+    CHECK(cb::AnyCollision{}(stage.world));
+  }
 }

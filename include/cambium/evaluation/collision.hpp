@@ -16,6 +16,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/moving_box.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/static_object.hpp"
@@ -34,13 +35,22 @@ template <class World>
   return geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
 }
 
+/// The motion of the box of the agent at `slot` in the last step, see `World::before_step`. It rests where it is if the
+/// agent was not in traffic before, or if no step led to the world's frame.
+template <class World>
+[[nodiscard]] geometry::MovingBox motion_at(World const& world, Slot slot) {
+  auto const& shape = world.roster().agents[slot].shape;
+  auto const& now = world.frame().agents[slot].state;
+  if (auto const* const before = world.before_step())
+    if (auto const& record = (*before)[slot]; record.status == AgentStatus::driving) return {shape, record.state, now};
+  return {shape, geometry::Pose{now.x, now.y, now.heading}};
+}
+
 namespace detail {
 
 /// An agent in traffic as the broad phase sees it: a circle about its reference point.
 struct Circle {
   double x, y, radius;
-  double low;  ///< lower bound along the sorted axis
-  Slot slot;
 
   [[nodiscard]] bool meets(Circle const& other) const {
     double const dx = x - other.x, dy = y - other.y, reach = radius + other.radius;
@@ -48,12 +58,43 @@ struct Circle {
   }
 };
 
+/// A circle that moves from (x, y) minus its half way to (x, y) plus it.
+struct MovingCircle {
+  double x, y, radius;
+  double half_x = 0.0, half_y = 0.0;
+  double deviation = 0.0;  ///< bound on that from an even motion [m]; part of the radius
+  double low = 0.0;        ///< lower bound along the sorted axis
+  Slot slot{};
+
+  /// Bound on half the way [m] relative to another one that also moves evenly.
+  [[nodiscard]] double half_way(MovingCircle const& other) const {
+    return std::abs(half_x - other.half_x) + std::abs(half_y - other.half_y);
+  }
+
+  [[nodiscard]] bool meets(MovingCircle const& other) const {
+    double const dx = x - other.x, dy = y - other.y, reach = radius + other.radius + half_way(other);
+    return dx * dx + dy * dy <= reach * reach;
+  }
+};
+
 template <class World>
-[[nodiscard]] Circle circle_of(World const& world, Slot slot) {
+[[nodiscard]] inline Circle circle_of(World const& world, Slot slot) {
   auto const& shape = world.roster().agents[slot].shape;
   auto const& state = world.frame().agents[slot].state;
   double const along = std::max(shape.front, shape.rear), across = std::max(shape.left, shape.right);
-  return {state.x, state.y, along + across, 0.0, slot};  // the sum of the legs bounds the diagonal without a root
+  return {state.x, state.y, along + across};  // the sum of the legs bounds the diagonal without a root
+}
+
+/// The circle of the agent at `slot` over the last step. `before`: `World::before_step`.
+template <class World, class Before>
+[[nodiscard]] inline MovingCircle moving_circle_of(World const& world, Before const* before, Slot slot) {
+  auto const [x, y, radius] = circle_of(world, slot);
+  if (!before || (*before)[slot].status != AgentStatus::driving)
+    return {.x = x, .y = y, .radius = radius, .slot = slot};
+  auto const &from = (*before)[slot].state, &to = world.frame().agents[slot].state;
+  double const half_x = 0.5 * (to.x - from.x), half_y = 0.5 * (to.y - from.y);
+  double const deviation = geometry::MovingBox::deviation(radius, from, to);
+  return {x - half_x, y - half_y, radius + deviation, half_x, half_y, deviation, 0.0, slot};
 }
 
 /// The box of the agent at `slot` after `time` [s] at constant velocity.
@@ -74,9 +115,9 @@ template <class World>
   return (other.x - state.x) * along.cos + (other.y - state.y) * along.sin;
 }
 
-/// The first static object that a box touches, or nothing. O(objects).
-template <class World>
-[[nodiscard]] StaticObject const* touched_object(World const& world, geometry::OrientedBox const& box) {
+/// The first static object that a box or a moving box touches, or nothing. O(objects).
+template <class World, class AnyBox>
+[[nodiscard]] StaticObject const* touched_object(World const& world, AnyBox const& box) {
   auto const& objects = world.roster().objects;
   auto const around = box.bounding_box();
   auto const touched = std::ranges::find_if(objects, [&](StaticObject const& object) {
@@ -182,8 +223,8 @@ struct AtFaultCollision {
   }
 };
 
-/// Whether any two agents in traffic touch each other, or an agent touches a static object. O(n log n); allocates only
-/// for more than 1024 agents.
+/// Whether any two agents in traffic touch each other or did so during the last step, or an agent and a static object.
+/// O(n log n); allocates only for more than 1024 agents.
 struct AnyCollision {
   /// Two agents in contact; `second` is none if the contact is with an object.
   struct Pair {
@@ -191,7 +232,7 @@ struct AnyCollision {
   };
 
   static constexpr char const* name = "any_collision";
-  static constexpr char const* summary = "any two agents touch, or an agent and an object";
+  static constexpr char const* summary = "any two agents touch or did in the last step, or an agent and an object";
   static constexpr auto parameters() { return parameter_list(); }
 
   /// The same for every slot.
@@ -204,7 +245,7 @@ struct AnyCollision {
   [[nodiscard]] std::optional<Pair> pair(World const& world) const {
     if (!world.roster().objects.empty())
       for (Slot i{}; index_of(i) < world.size(); ++i)
-        if (in_traffic(world, i) && detail::touched_object(world, box_at(world, i)))
+        if (in_traffic(world, i) && detail::touched_object(world, motion_at(world, i)))
           return Pair{world.roster().agents[i].id};
     return world.size() <= few ? compare_all(world) : sweep(world);
   }
@@ -216,27 +257,35 @@ struct AnyCollision {
   /// agents, this is faster than sorting.
   template <class World>
   [[nodiscard]] static std::optional<Pair> compare_all(World const& world) {
-    std::array<double, few> x, y, radius, heading, sin, cos;
+    std::array<double, few> x, y, half_x, half_y, radius, deviation, heading, sin, cos;
     std::array<Slot, few> slots;
     std::size_t count = 0;
     bool bounded = true;
+    auto const* const before = world.before_step();
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
       if (!in_traffic(world, slot)) continue;
-      auto const circle = detail::circle_of(world, slot);
+      auto const circle = detail::moving_circle_of(world, before, slot);
       x[count] = circle.x;
       y[count] = circle.y;
+      half_x[count] = circle.half_x;
+      half_y[count] = circle.half_y;
       radius[count] = circle.radius;
+      deviation[count] = circle.deviation;
       heading[count] = world.frame().agents[slot].state.heading;
       bounded = bounded && std::abs(heading[count]) <= 1e5;  // see sin_cos_bounded
       slots[count++] = slot;
     }
     if (!bounded) return sweep(world);
+    auto const half_way = [&](std::size_t i, std::size_t j) {
+      return std::abs(half_x[j] - half_x[i]) + std::abs(half_y[j] - half_y[i]);
+    };
     auto const meet = [&](std::size_t i, std::size_t j) {
-      double const dx = x[j] - x[i], dy = y[j] - y[i], reach = radius[j] + radius[i];
+      double const dx = x[j] - x[i], dy = y[j] - y[i], reach = radius[j] + radius[i] + half_way(i, j);
       return dx * dx + dy * dy <= reach * reach;
     };
     auto const box = [&](std::size_t i) {
-      return geometry::box_of(world.roster().agents[slots[i]].shape, x[i], y[i], cos[i], sin[i]);
+      return geometry::box_of(world.roster().agents[slots[i]].shape, x[i] + half_x[i], y[i] + half_y[i], cos[i],
+                              sin[i]);
     };
     bool has_directions = false;
     for (std::size_t i = 0; i < count; ++i) {
@@ -251,7 +300,9 @@ struct AnyCollision {
       has_directions = true;
       auto const own = box(i);
       for (std::size_t j = i + 1; j < count; ++j)
-        if (meet(i, j) && geometry::intersects(own, box(j))) return ordered(world, slots[i], slots[j]);
+        if (meet(i, j) &&
+            touch(world, slots[i], slots[j], own, box(j), 2.0 * half_way(i, j) + deviation[i] + deviation[j]))
+          return ordered(world, slots[i], slots[j]);
     }
     return std::nullopt;
   }
@@ -259,22 +310,35 @@ struct AnyCollision {
   /// The first pair in contact along the axis with the wider spread (sweep and prune).
   template <class World>
   [[nodiscard]] static std::optional<Pair> sweep(World const& world) {
-    boost::container::small_vector<detail::Circle, 1024> circles;
+    boost::container::small_vector<detail::MovingCircle, 1024> circles;
     circles.reserve(world.size());
     geometry::Box scene;
+    auto const* const before = world.before_step();
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
       if (!in_traffic(world, slot)) continue;
-      auto const& circle = circles.emplace_back(detail::circle_of(world, slot));
+      auto const& circle = circles.emplace_back(detail::moving_circle_of(world, before, slot));
       scene.add(circle.x, circle.y);
     }
     sort_along(circles, scene.max_y - scene.min_y > scene.max_x - scene.min_x);
     for (std::size_t i = 0; i < circles.size(); ++i) {
       auto const& a = circles[i];
-      for (std::size_t j = i + 1; j < circles.size() && circles[j].low <= a.x + a.radius; ++j)
-        if (a.meets(circles[j]) && geometry::intersects(box_at(world, a.slot), box_at(world, circles[j].slot)))
-          return ordered(world, a.slot, circles[j].slot);
+      double const high = a.x + a.radius + std::abs(a.half_x);
+      for (std::size_t j = i + 1; j < circles.size() && circles[j].low <= high; ++j)
+        if (auto const& b = circles[j];
+            a.meets(b) && touch(world, a.slot, b.slot, box_at(world, a.slot), box_at(world, b.slot),
+                                2.0 * a.half_way(b) + a.deviation + b.deviation))
+          return ordered(world, a.slot, b.slot);
     }
     return std::nullopt;
+  }
+
+  /// Whether two agents whose boxes are `a` and `b` now touch or did so during the last step, in which no point of one
+  /// made more than `way` [m] relative to the other.
+  template <class World>
+  [[nodiscard]] static bool touch(World const& world, Slot i, Slot j, geometry::OrientedBox const& a,
+                                  geometry::OrientedBox const& b, double way) {
+    double const gap = geometry::separation(a, b);
+    return gap <= 0.0 || (gap <= way && geometry::intersects(motion_at(world, i), motion_at(world, j)));
   }
 
   template <class World>
@@ -287,8 +351,8 @@ struct AnyCollision {
   template <class Circles>
   static void sort_along(Circles& circles, bool y) {
     for (auto& c : circles) {
-      if (y) std::swap(c.x, c.y);
-      c.low = c.x - c.radius;
+      if (y) std::swap(c.x, c.y), std::swap(c.half_x, c.half_y);
+      c.low = c.x - c.radius - std::abs(c.half_x);
     }
     std::sort(circles.begin(), circles.end(),
               [](auto const& a, auto const& b) { return a.low < b.low || (a.low == b.low && a.slot < b.slot); });

@@ -312,6 +312,7 @@ class World {
     record.execution = {};
     if (record.status != AgentStatus::driving) detail::forget_past(record);
     record.status = AgentStatus::driving;
+    if (scratch_.stepped) scratch_.next[slot].status = AgentStatus::not_started;  // it did not drive here
     pass_goals(slot, record);
     scratch_.fresh = false;
   }
@@ -355,6 +356,11 @@ class World {
   /// Advances the world by `dt` [s]: every agent plans on the current frame, then the next frame replaces it. Does not
   /// allocate once warm and throws nothing itself; the result reports problems. O(agents).
   StepResult step(double dt);
+
+  /// The records before the last step, in the order of the frame's, or null: after `add`, `remove` and `restore`, and in
+  /// copies, the current frame has nothing before it. `set_state` takes its agent out of the traffic before. Evaluators
+  /// read from it how agents came to where they are. Valid until the world changes.
+  [[nodiscard]] IdVector<Record, Slot> const* before_step() const { return scratch_.stepped ? &scratch_.next : nullptr; }
 
   /// Keeps the last `frames` frames from now on (0, the default: none). Copies and predictions start without history.
   /// The history is cleared when an agent enters, leaves, or gets another route or another model of behaviour. Throws
@@ -425,6 +431,7 @@ StepResult World<Set, ExecutionType, DynamicModelType, ObserverType>::step(doubl
   }
   refresh_traffic();
   auto& next = scratch_.next;
+  scratch_.stepped = false;
   next.resize(frame_.agents.size());
   result = detail::WorldStep<World>(*this, dt, next, scratch_.workspaces).run();
   scratch_.remember(frame_);
@@ -432,6 +439,7 @@ StepResult World<Set, ExecutionType, DynamicModelType, ObserverType>::step(doubl
   frame_.time += dt;
   ++frame_.step;
   scratch_.fresh = false;
+  scratch_.stepped = true;
   return result;
 }
 

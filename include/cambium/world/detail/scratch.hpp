@@ -15,7 +15,8 @@ struct Scratch {
   TrafficIndex traffic;
   PlaneIndex plane;    ///< only used if a behaviour looks around
   bool fresh = false;  ///< the traffic index matches the current frame
-  IdVector<typename Frame::Record, Slot> next;
+  IdVector<typename Frame::Record, Slot> next;  ///< after a step: the records before it
+  bool stepped = false;                         ///< the current frame came from a step
   Workspaces workspaces;       ///< of behaviours
   std::vector<Frame> history;  ///< ring of frames
   std::size_t kept = 0, newest = 0;
@@ -32,6 +33,7 @@ struct Scratch {
 
   void forget() {
     fresh = false;
+    stepped = false;
     kept = 0;
   }
 
