@@ -169,7 +169,7 @@ class Inspector {
     for (cb::Slot b{}; index_of(b) < world.size(); ++b)
       for (cb::Slot a{}; a < b; ++a) {
         if (!cb::in_traffic(world, a) || !cb::in_traffic(world, b)) continue;
-        if (!cb::geometry::intersects(cb::box_at(world, a), cb::box_at(world, b))) continue;
+        if (!cb::geometry::intersects(cb::motion_at(world, a), cb::motion_at(world, b))) continue;
         if (std::abs(height(world, a) - height(world, b)) > 3.0) continue;
         auto const flaw = kind_of_collision(world, a, b);
         auto const walks = [&](cb::Slot slot) {

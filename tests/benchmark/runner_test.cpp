@@ -385,6 +385,25 @@ TEST_CASE("replays that cannot be written are reported once, and the results are
   CHECK(warnings.front().find("replays") != std::string::npos);
 }
 
+TEST_CASE("a benchmark warns of steps longer than a driver's time headway, once and with the first such driver") {
+  auto set = support::merging_set<Traffic>(2);
+  std::vector<std::string> warnings;
+  auto const run = [&](double time_step) {
+    set.time_step = time_step;
+    ResultStore store(":memory:");
+    warnings.clear();
+    run_benchmark(set, {contender<Traffic>(IdmClassic{})}, store,
+                  {.warn = [&](auto const& sentence) { warnings.push_back(sentence); }});
+  };
+  run(0.2);
+  CHECK(warnings.empty());
+  run(5.0);
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings.front().find("scenario 0, agent ") != std::string::npos);
+  CHECK(warnings.front().find("the step 5 s") != std::string::npos);
+  CHECK(warnings.front().find("choose a shorter time_step") != std::string::npos);
+}
+
 TEST_CASE("a run whose plans take too long together ends with an error") {
   auto const set = support::merging_set<Traffic>(1);
   auto const idm = contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}});

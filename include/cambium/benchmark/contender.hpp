@@ -217,6 +217,10 @@ class RunJudge {
     }
     auto const pair = AnyCollision{}.pair(world);
     bool const others = pair && pair->first != id(world) && pair->second != id(world);
+    if (pair && !others && !result_.collision) {  // between two frames
+      result_.collision = true;
+      result_.hit = pair->first == id(world) ? pair->second : pair->first;
+    }
     result_.others_collided += others && !others_collide_;
     others_collide_ = others;
   }

@@ -72,6 +72,34 @@ namespace detail {
   return recording;
 }
 
+/// The time headway [s] of a driver, or of the one that it wraps; infinity if it has none.
+template <class Behavior>
+[[nodiscard]] double time_headway_of(Behavior const& behavior) {
+  if constexpr (requires { behavior.law.time_headway; })
+    return static_cast<double>(behavior.law.time_headway);
+  else if constexpr (requires { behavior.nominal; })
+    return time_headway_of(behavior.nominal);
+  else
+    return std::numeric_limits<double>::infinity();
+}
+
+/// A sentence about the drivers of a set for whom its step is too long, see behavior/README.md; empty without any.
+template <class World>
+[[nodiscard]] std::string warning_of_step(ScenarioSet<World> const& set) {
+  std::size_t count = 0;
+  std::string first;
+  for (std::size_t i = 0; i < set.scenarios.size(); ++i)
+    for (auto const& agent : set.scenarios[i].agents) {
+      double const headway = agent.behavior.visit([](auto const& behavior) { return time_headway_of(behavior); });
+      if (!(set.time_step > headway) || count++ > 0) continue;
+      first = label_of(set.title, i) + (agent.id ? ", agent " + to_string(*agent.id) : std::string()) +
+              ": its time headway is " + rounded_text(headway) + " s";
+    }
+  if (count == 0) return {};
+  return first + ", the step " + rounded_text(set.time_step) + " s; drivers may collide in steps longer than that (" +
+         std::to_string(count) + " in the set): choose a shorter time_step";
+}
+
 /// Hash of what a process has read: scenarios of hash `set`, and a contender.
 template <class World>
 [[nodiscard]] std::uint64_t setup_of(std::uint64_t set, Contender<World> const& contender) {
@@ -167,6 +195,7 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
     throw ParameterError("benchmark",
                          "has no shard " + std::to_string(options.shard) + " of " + std::to_string(options.shards),
                          "give at least 1 shard, and one of 0 to shards - 1");
+  if (auto const sentence = detail::warning_of_step(set); !sentence.empty() && options.warn) options.warn(sentence);
   auto const hash = set.hash();
   auto const count = set.scenarios.size();
   store.add_set(hash, set.title, count, options.source);
