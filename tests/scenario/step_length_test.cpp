@@ -74,7 +74,7 @@ TEST_CASE("drivers do not collide in steps shorter than their time headway; in l
   Count beyond;
   for (double const dt : {0.2, 0.5, 1.0, 2.0}) {
     Count count;
-    for (std::uint64_t const seed : {1, 2}) {
+    for (std::uint64_t const seed : {1u, 2u}) {
       count += drive<Mobil>("highway.xodr", 1200.0, 30.0, dt, seed);
       count += drive<UrbanDriver>("merging.xodr", 600.0, 15.0, dt, seed);
       count += drive<UrbanDriver>("intersection_4way.xodr", 400.0, 13.0, dt, seed);
