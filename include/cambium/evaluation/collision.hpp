@@ -61,10 +61,10 @@ struct Circle {
 /// A circle that moves from (x, y) minus its half way to (x, y) plus it.
 struct MovingCircle {
   double x, y, radius;
-  double half_x = 0.0, half_y = 0.0;
-  double deviation = 0.0;  ///< bound on that from an even motion [m]; part of the radius
-  double low = 0.0;        ///< lower bound along the sorted axis
-  Slot slot{};
+  double low;  ///< lower bound along the sorted axis
+  double half_x, half_y;
+  double deviation;  ///< bound on that from an even motion [m]; part of the radius
+  Slot slot;
 
   /// Bound on half the way [m] relative to another one that also moves evenly.
   [[nodiscard]] double half_way(MovingCircle const& other) const {
@@ -87,14 +87,13 @@ template <class World>
 
 /// The circle of the agent at `slot` over the last step. `before`: `World::before_step`.
 template <class World, class Before>
-[[nodiscard]] inline MovingCircle moving_circle_of(World const& world, Before const* before, Slot slot) {
+[[nodiscard]] MovingCircle moving_circle_of(World const& world, Before const* before, Slot slot) {
   auto const [x, y, radius] = circle_of(world, slot);
-  if (!before || (*before)[slot].status != AgentStatus::driving)
-    return {.x = x, .y = y, .radius = radius, .slot = slot};
+  if (!before || (*before)[slot].status != AgentStatus::driving) return {x, y, radius, 0.0, 0.0, 0.0, 0.0, slot};
   auto const &from = (*before)[slot].state, &to = world.frame().agents[slot].state;
   double const half_x = 0.5 * (to.x - from.x), half_y = 0.5 * (to.y - from.y);
   double const deviation = geometry::MovingBox::deviation(radius, from, to);
-  return {x - half_x, y - half_y, radius + deviation, half_x, half_y, deviation, 0.0, slot};
+  return {x - half_x, y - half_y, radius + deviation, 0.0, half_x, half_y, deviation, slot};
 }
 
 /// The box of the agent at `slot` after `time` [s] at constant velocity.
