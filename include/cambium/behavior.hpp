@@ -76,6 +76,7 @@
 #include "cambium/behavior/pedestrian/crossing.hpp"
 #include "cambium/behavior/pedestrian/pedestrian.hpp"
 #include "cambium/behavior/pedestrian/social_force.hpp"
+#include "cambium/behavior/pedestrian/surroundings.hpp"
 #include "cambium/behavior/people.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/behavior/view.hpp"

@@ -357,10 +357,12 @@ class World {
   /// allocate once warm and throws nothing itself; the result reports problems. O(agents).
   StepResult step(double dt);
 
-  /// The records before the last step, in the order of the frame's, or null: after `add`, `remove` and `restore`, and in
-  /// copies, the current frame has nothing before it. `set_state` takes its agent out of the traffic before. Evaluators
-  /// read from it how agents came to where they are. Valid until the world changes.
-  [[nodiscard]] IdVector<Record, Slot> const* before_step() const { return scratch_.stepped ? &scratch_.next : nullptr; }
+  /// The records before the last step, in the order of the frame's, or null: after `add`, `remove` and `restore`, and
+  /// in copies, the current frame has nothing before it. `set_state` takes its agent out of the traffic before.
+  /// Evaluators read from it how agents came to where they are. Valid until the world changes.
+  [[nodiscard]] IdVector<Record, Slot> const* before_step() const {
+    return scratch_.stepped ? &scratch_.next : nullptr;
+  }
 
   /// Keeps the last `frames` frames from now on (0, the default: none). Copies and predictions start without history.
   /// The history is cleared when an agent enters, leaves, or gets another route or another model of behaviour. Throws

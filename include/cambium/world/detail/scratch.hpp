@@ -13,12 +13,12 @@ namespace cambium::detail {
 template <class Frame, class Workspaces>
 struct Scratch {
   TrafficIndex traffic;
-  PlaneIndex plane;    ///< only used if a behaviour looks around
-  bool fresh = false;  ///< the traffic index matches the current frame
+  PlaneIndex plane;                             ///< only used if a behaviour looks around
+  bool fresh = false;                           ///< the traffic index matches the current frame
   IdVector<typename Frame::Record, Slot> next;  ///< after a step: the records before it
   bool stepped = false;                         ///< the current frame came from a step
-  Workspaces workspaces;       ///< of behaviours
-  std::vector<Frame> history;  ///< ring of frames
+  Workspaces workspaces;                        ///< of behaviours
+  std::vector<Frame> history;                   ///< ring of frames
   std::size_t kept = 0, newest = 0;
 
   Scratch() = default;
