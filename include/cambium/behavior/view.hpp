@@ -120,9 +120,10 @@ struct ViewArchetype {
   [[nodiscard]] double acceleration(RoadUser const& agent) const;  ///< over the last step, along its heading [m/s^2]
   [[nodiscard]] geometry::Polygon const& outline(RoadUser const& object) const;
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const;  ///< its turn signal permits that way
-  /// Where it waits before the junction of `lane` for others of its size, on the way that its turn signal shows: a
-  /// position on the lane's path, negative before the lane; infinite if it does not wait there [m].
-  [[nodiscard]] double waiting_place(RoadUser const& user, LaneId lane, bool is_large) const;
+  /// The section that it is in at a conflict, with positions on the way by which it comes (see
+  /// `map::LaneCorridor::section_of`); nothing where its turn signals show another way.
+  [[nodiscard]] std::optional<map::ConflictSection> section(RoadUser const& user, map::Conflict const& conflict,
+                                                            bool is_large, bool others_large) const;
   ///@}
 
   /// @name Lights

@@ -41,7 +41,8 @@ CAMBIUM_COLD double room_before_zones(JunctionSite::World const& world, AgentId 
   if (corridor.width_at(at.s - agent.shape.rear) < agent.shape.width()) return -1.0;
   bool const large = !world.map().options().conflict_shape.holds(agent.shape);
   double hold = std::numeric_limits<double>::infinity();
-  for (auto const& conflict : corridor.conflicts) hold = std::min(hold, conflict.hold_for_all(large));
+  for (auto const& conflict : corridor.conflicts)
+    hold = std::min(hold, conflict.section[large][1].place_to_wait(agent.shape.front, false));
   return hold - at.s;
 }
 

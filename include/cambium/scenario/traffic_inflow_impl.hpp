@@ -28,7 +28,7 @@ CAMBIUM_COLD double entering_speed(Map const& map, map::LaneCorridor const& corr
     if (signal.line > s + shape.front) slow_down(signal.line - s - shape.front, 0.0);
   bool const large = !map.options().conflict_shape.holds(shape);
   for (auto const& conflict : corridor.conflicts)
-    if (conflict.hull().end > s) slow_down(conflict.hold_for_all(large) - s - 1.0, 0.0);
+    if (conflict.hull().end > s) slow_down(conflict.section[large][1].place_to_wait(shape.front, false) - s - 1.0, 0.0);
   return speed;
 }
 

@@ -227,16 +227,16 @@ class ObservedWorld {
     return world_->roster().agents[index_of(user.slot)].road->corridor_of(lane) != none<CorridorId>;
   }
 
-  /// Where an agent waits before the junction of `lane` for others of its size, on the way that its turn signals show:
-  /// the position of its reference point on the lane's path, negative before the lane [m]. `is_large`: see
-  /// `map::ConflictZones`. Infinite for objects, and where it does not pass the lane or need not wait for anybody
-  /// there. O(lanes and conflicts of its road).
-  [[nodiscard]] double waiting_place(RoadUser const& user, LaneId lane, bool is_large) const {
-    constexpr double nowhere = std::numeric_limits<double>::infinity();
-    if (!is_valid(user.agent)) return nowhere;
+  /// The section that an agent is in at a conflict of this agent's corridor, with positions on the way by which it
+  /// comes (see `map::LaneCorridor::section_of`). Nothing for objects, and where its turn signals show another way.
+  /// O(lanes and conflicts of its road).
+  [[nodiscard]] std::optional<map::ConflictSection> section(RoadUser const& user, map::Conflict const& conflict,
+                                                            bool is_large, bool others_large) const {
+    if (!is_valid(user.agent)) return std::nullopt;
     auto const& road = *world_->roster().agents[index_of(user.slot)].road;
-    auto const corridor = road.corridor_of(lane);
-    return corridor == none<CorridorId> ? nowhere : road.corridors[corridor].hold_before(lane, is_large);
+    auto const corridor = road.corridor_of(conflict.other);
+    if (corridor == none<CorridorId>) return std::nullopt;
+    return road.corridors[corridor].section_of(conflict, is_large, others_large);
   }
 
   /// Returns a separate world, as this agent sees it, in which all agents behave as `prediction` says. Step, copy and

@@ -34,17 +34,8 @@ struct ConflictUser {
   RoadUser const& user;
   double at;
   ExtraReach reach;
-  bool is_behind_slow = false;                            ///< behind a slow vehicle that is not in the junction yet
-  double hold = std::numeric_limits<double>::infinity();  ///< where it waits, see `ViewArchetype::waiting_place` [m]
-
-  /// Whether it has passed the line, or the place where it waits.
-  [[nodiscard]] bool has_entered(map::ConflictZone const& zone) const {
-    return at + user.front > zone.other_line + over_line || at > hold + over_line;
-  }
-  /// Whether it is inside the junction.
-  [[nodiscard]] bool is_inside(map::Conflict const& conflict, map::ConflictZone const& zone) const {
-    return has_entered(zone) && at < conflict.other_lane_end;
-  }
+  bool is_behind_slow = false;                             ///< behind a slow vehicle that has not entered yet
+  double place = std::numeric_limits<double>::infinity();  ///< where it waits, by `map::ConflictSection` [m]
 };
 
 /// Whether a shape needs the conflicts of the large shape.
@@ -60,48 +51,82 @@ template <class View>
   return {std::max(0.0, front - known.front), std::max(0.0, rear - known.rear)};
 }
 
+/// Deceleration by which all drivers judge who can still stop where it waits [m/s^2]. One for all, for two drivers have
+/// to find the same answer.
+inline constexpr double judged_deceleration = 3.0;
+/// The highest acceleration that drivers reckon with in others, in a step [m/s^2].
+inline constexpr double hardest_start = 3.5;
+
+/// Whether a vehicle has entered the section before which it waits at `place` [m]: it is beyond that, or can no longer
+/// stop there.
+[[nodiscard]] inline bool has_entered(double s, double speed, double place) {
+  double const way = place + over_line - s;
+  return way < 0.0 || !can_stop(speed, way, judged_deceleration);
+}
+
 /// When a vehicle stopped before a junction, as another driver there remembers it.
 enum class Arrival : std::uint8_t { earlier, together, later };
 
-/// The vehicles that stood before a junction when a driver stopped there, or had stood there and were about to enter.
-/// It holds the lower halves of seven ids; where more stood, unknown vehicles count as earlier.
-class StandingAgents {
+/// A vehicle in its section, and the own section with which that conflicts: the low bits of its id and their numbers.
+using SectionKey = std::uint32_t;
+[[nodiscard]] inline SectionKey section_key(AgentId id, std::uint32_t section, std::uint32_t own_section) {
+  return static_cast<SectionKey>(static_cast<std::uint16_t>(id)) << 16 | (section & 0xff) << 8 | (own_section & 0xff);
+}
+
+/// The vehicles that came before a driver to where their ways cross: those that have entered their sections before it,
+/// and those that stood there when it stopped. Holds seven, rather those that have entered.
+class AgentsBefore {
  public:
-  [[nodiscard]] Arrival arrival_of(AgentId id) const {
-    auto const at = find(id);
-    if (at == size_) return size_ < ids_.size() ? Arrival::later : Arrival::earlier;
-    return (together_ >> at & 1) != 0 ? Arrival::together : Arrival::earlier;
+  /// Whether there is no room for another one that has entered.
+  [[nodiscard]] bool is_full_of_entered() const { return entered_ == 127; }
+  [[nodiscard]] bool holds(SectionKey key) const { return find(key) < size_; }
+  /// Whether it has entered its section.
+  [[nodiscard]] bool holds_entered(SectionKey key) const { return has(entered_, find(key)); }
+  /// Whether it came in the same step as the driver.
+  [[nodiscard]] bool holds_together(SectionKey key) const { return has(together_, find(key)); }
+  /// When a vehicle stopped; where the list is full, all others count as earlier.
+  [[nodiscard]] Arrival arrival_of(SectionKey key) const {
+    auto const at = find(key);
+    if (at == size_) return is_full() ? Arrival::earlier : Arrival::later;
+    return has(together_, at) ? Arrival::together : Arrival::earlier;
   }
-  [[nodiscard]] bool holds(AgentId id) const { return find(id) < size_; }
-  void add(AgentId id) {
-    if (find(id) == size_ && size_ < ids_.size()) ids_[size_++] = lower_half(id);
+  /// Adds it, unless it is there or there is no room.
+  void add(SectionKey key, bool has_entered, bool is_together) {
+    if (holds(key)) return;
+    std::size_t at = size_;
+    if (is_full()) {
+      at = 0;
+      while (at < keys_.size() && has(entered_, at)) ++at;
+      if (!has_entered || at == keys_.size()) return;
+    } else {
+      ++size_;
+    }
+    auto const bit = static_cast<std::uint8_t>(1u << at);
+    entered_ = static_cast<std::uint8_t>(has_entered ? entered_ | bit : entered_ & ~bit);
+    together_ = static_cast<std::uint8_t>(is_together ? together_ | bit : together_ & ~bit);
+    keys_[at] = key;
   }
-  /// Marks those that `before`, a step ago, did not hold: they stopped in the same step as the driver.
-  void mark_new(StandingAgents const& before) {
-    for (std::uint8_t i = 0; i < size_; ++i)
-      if (std::find(before.ids_.begin(), before.ids_.begin() + before.size_, ids_[i]) ==
-          before.ids_.begin() + before.size_)
-        together_ = static_cast<std::uint8_t>(together_ | 1u << i);
-  }
-  static constexpr char const* name = "standing_agents";
+  static constexpr char const* name = "agents_before";
   static constexpr auto parameters() {
-    using P = StandingAgents;
+    using P = AgentsBefore;
     return parameter_list(
-        parameter("ids", &P::ids_, "-", Range{0, 65535}, "lower halves of their ids"),
+        parameter("keys", &P::keys_, "-", Range{0, 4294967295.0}, "low bits of their ids, sections, own sections"),
         parameter("size", &P::size_, "-", Range{0, 7}, "how many"),
-        parameter("together", &P::together_, "-", Range{0, 255}, "bits: who stopped in the same step"));
+        parameter("entered", &P::entered_, "-", Range{0, 127}, "bits: who has entered"),
+        parameter("together", &P::together_, "-", Range{0, 127}, "bits: who came in the same step"));
   }
 
-  friend bool operator==(StandingAgents const&, StandingAgents const&) = default;
+  friend bool operator==(AgentsBefore const&, AgentsBefore const&) = default;
 
  private:
-  [[nodiscard]] static std::uint16_t lower_half(AgentId id) { return static_cast<std::uint16_t>(id); }
-  [[nodiscard]] std::size_t find(AgentId id) const {
-    return static_cast<std::size_t>(std::find(ids_.begin(), ids_.begin() + size_, lower_half(id)) - ids_.begin());
+  [[nodiscard]] bool is_full() const { return size_ == keys_.size(); }
+  [[nodiscard]] std::size_t find(SectionKey key) const {
+    return static_cast<std::size_t>(std::find(keys_.begin(), keys_.begin() + size_, key) - keys_.begin());
   }
+  [[nodiscard]] bool has(std::uint8_t bits, std::size_t at) const { return at < size_ && (bits >> at & 1) != 0; }
 
-  std::array<std::uint16_t, 7> ids_{};
-  std::uint8_t size_{}, together_{};
+  std::array<SectionKey, 7> keys_{};
+  std::uint8_t size_{}, entered_{}, together_{};
 };
 
 /// Among the vehicles offered, the one that is next to enter the junction, at most `short_way` before its line.
@@ -118,19 +143,17 @@ struct NextToEnter {
 
 /// The own vehicle before a conflict.
 struct ConflictAsker {
-  double s{}, front{};                     ///< corridor positions of its reference point and its front end [m]
-  double speed{};                          ///< [m/s]
-  double waited{};                         ///< time at a standstill there [s]
-  double patience{};                       ///< see `Intersection::patience` [s]
-  StandingAgents const* stopped_before{};  ///< those that stood there when it stopped
-  bool is_large = false;                   ///< see `map::ConflictZones`
-  double dt{};                             ///< length of the step [s]
-  double braking{};                        ///< deceleration by which vehicles can stop [m/s^2]
-
-  [[nodiscard]] bool is_inside(map::Conflict const& conflict, map::ConflictZone const& zone) const {
-    return (front > zone.line + over_line || s > conflict.hold_among_equals(is_large) + over_line) &&
-           s < conflict.lane_end;
-  }
+  double s{}, front{};           ///< corridor positions of its reference point and its front end [m]
+  double speed{};                ///< [m/s]
+  double waited{};               ///< time at a standstill there [s]
+  double patience{};             ///< see `Conflicts::patience` [s]
+  AgentsBefore const* before{};  ///< those that came before it, until the last step
+  bool is_large = false;         ///< see `map::ConflictZones`
+  bool may_meet_large = false;   ///< large vehicles are, or were, in the world
+  double dt{};                   ///< length of the step [s]
+  std::uint32_t section{};       ///< number of the conflict's section
+  double place{};                ///< where it waits for that [m]
+  bool has_entered = false;      ///< it has entered that
 };
 
 /// Whether neither priorities nor lights say who goes first.
@@ -141,94 +164,70 @@ template <class View>
   return conflict.right_of_way == map::RightOfWay::equal || (is_off(conflict.light) && is_off(conflict.other_light));
 }
 
-/// Whether lights let both go at the same time, as those that turn left and oncoming traffic.
+/// Whether a light lets its traffic go: it is green, or yellow.
 template <class View>
-[[nodiscard]] bool go_together(View const& view, map::Conflict const& conflict) {
-  auto const goes = [&](LightId light) {
-    if (!is_valid(light)) return false;
-    auto const color = view.light(light);
-    return color == map::LightColor::green || color == map::LightColor::yellow;
-  };
-  return goes(conflict.light) && goes(conflict.other_light);
+[[nodiscard]] bool lets_go(View const& view, LightId light) {
+  if (!is_valid(light)) return false;
+  auto const color = view.light(light);
+  return color == map::LightColor::green || color == map::LightColor::yellow;
 }
 
-/// Whether the other vehicle leaves its place to wait before the own one, while both are outside: it can no longer stop
-/// there, or will not be able to after this step if it accelerates by `pull_away`, and it is nearer (at equal distance:
-/// has the smaller id). All drivers find the same order, so only one of the vehicles in conflict leaves per step,
-/// unless some accelerate harder. If several left at once, each would be inside for the others a step later, and three
-/// could form a ring.
-[[nodiscard]] inline bool leaves_first(map::Conflict const& conflict, ConflictUser const& other,
-                                       ConflictAsker const& own, bool is_smaller) {
-  auto const& user = other.user;
-  double const to_hold = other.hold - other.at, own_to_hold = conflict.hold_among_equals(own.is_large) - own.s;
-  if (user.speed < standing_speed || !can_stop(own.speed, own_to_hold, own.braking)) return false;
-  if (!can_stop(user.speed, to_hold, own.braking)) return true;
-  double const speed = user.speed + pull_away * own.dt;
-  if (can_stop(speed, to_hold - 0.5 * (user.speed + speed) * own.dt, own.braking)) return false;
-  return to_hold != own_to_hold ? to_hold < own_to_hold : !is_smaller;
+/// Whether a moving vehicle that can still stop may no longer be able to after this step, however it accelerates.
+[[nodiscard]] inline bool is_about_to_enter(ConflictUser const& other, double dt) {
+  double const v = other.user.speed, end = v + hardest_start * dt;
+  return v >= standing_speed && has_entered(other.at + 0.5 * (v + end) * dt, end, other.place);
 }
 
-/// Whether the own vehicle goes before `other`, where both can still stop before the zone, `own_way` and `way` [m]
-/// ahead of them. The first rule that applies decides:
-/// - One by one: where neither priorities nor lights say who goes first, a driver does not leave its place to wait in
-///   the same step as another driver that is nearer to its own (`leaves_first`).
-/// - First come, first served: where neither priorities nor lights say who goes first, a driver that stands at its line
-///   goes before one that stopped there later or has yet to stop. With right before left alone, four drivers would wait
-///   for each other again and again.
-/// - Patience: a driver that has waited too long for a standing vehicle goes.
-/// - At green, oncoming traffic goes before a vehicle that waits in the junction to turn across it.
-/// - A vehicle inside the junction goes before one outside. Of two inside, the one that can leave it first goes.
+/// Whether the own vehicle goes before `other`, where both can still stop before their sections, `own_way` and `way`
+/// [m] before the zone. The first rule that applies decides:
 /// - A vehicle before a red light waits.
+/// - One by one: where neither priorities nor lights say who goes first, a driver does not leave its place to wait in
+///   the same step as another that is nearer to its own.
+/// - First come, first served: there, a driver that stands at its line goes before one that stopped there later or has
+///   yet to stop. With right before left alone, four drivers would wait for each other again and again.
+/// - Patience: a driver that has waited too long for a standing vehicle goes.
 /// - A standing driver lets a vehicle go that has just started close to its line.
 /// - Right of way by map, signs and rules (`map::right_of_way`).
 /// - Without right of way, the nearer vehicle goes; at about equal distance, the one with the smaller id.
 ///
-/// Two drivers disagree only by the second and third rules, which ask how long a driver has stood: both may start at
-/// once. Then the first to leave its place has the zone, and the other one stops, as it can.
+/// Two drivers disagree only by the third and fourth rules, which ask how long a driver has stood: both may start at
+/// once. Then they enter together, and the smaller id goes first.
 ///
 /// O(1).
 template <class View>
 [[nodiscard]] bool goes_first(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
-                              ConflictUser const& other, double way, double own_way, ConflictAsker const& own) {
+                              ConflictUser const& other, SectionKey key, double way, double own_way,
+                              ConflictAsker const& own) {
   constexpr double spread = 8.0;      // [s] range over which ids spread the end of patience
-  constexpr double later = 20.0;      // [s] more for the larger id, and if only one of the two is in the junction
+  constexpr double later = 20.0;      // [s] more for the larger id
   constexpr double for_order = 10.0;  // [s] more where those who came earlier go first
-  auto const& [user, at, reach, is_behind_slow, hold] = other;
+  auto const& user = other.user;
+  if (is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red) return true;
   bool const stands = user.speed < standing_speed, own_stands = own.speed < standing_speed;
   bool const is_smaller = view.id() < user.agent, is_patient = own.waited < own.patience;
-  bool const inside = other.is_inside(conflict, zone), own_inside = own.is_inside(conflict, zone);
-  bool const in_order = !inside && !own_inside && is_by_arrival(view, conflict);
-  if (in_order && leaves_first(conflict, other, own, is_smaller)) return false;
+  bool const in_order = is_by_arrival(view, conflict);
+  if (in_order && is_about_to_enter(other, own.dt)) {
+    double const nearer_by = other.place - other.at - (own.place - own.s);
+    if (std::abs(nearer_by) > 1e-6 ? nearer_by < 0.0 : !is_smaller) return false;
+  }
   bool const by_arrival = in_order && !is_patient;
-  double const to_line = zone.other_line - at - user.front;
+  double const to_line = zone.other_line - other.at - user.front;
   // Without that order, all count as having come together.
-  auto const arrival = by_arrival ? own.stopped_before->arrival_of(user.agent) : Arrival::together;
-  bool const has_to_stop = is_behind_slow || (user.speed < starting_speed && to_line < short_way);
+  auto const arrival = by_arrival ? own.before->arrival_of(key) : Arrival::together;
+  bool const has_to_stop = other.is_behind_slow || (user.speed < starting_speed && to_line < short_way);
   if (arrival == Arrival::later && has_to_stop) return true;
   if (stands && !is_patient) {
     // Two drivers must not lose their patience together. Of two that wait for each other, the smaller id goes long
     // before the other; the golden ratio spreads the ids of a ring of waiting drivers.
     double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
     double const turn = spread * (share - std::floor(share)) + (is_smaller ? 0.0 : later);  // [s]
-    double const extra = inside != own_inside ? later : arrival == Arrival::earlier ? for_order : 0.0;
-    if (own.waited >= own.patience + turn + extra) return true;
-  }
-  bool const has_way = conflict.right_of_way == map::RightOfWay::first;
-  bool const is_decided = conflict.right_of_way != map::RightOfWay::equal;
-  bool const at_green = is_decided && go_together(view, conflict);
-  if (inside != own_inside) return at_green && own_inside != has_way ? has_way : own_inside;
-  if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
-    return true;
-  if (inside) {
-    // Both drivers find the same two times, which keep their order once one of the two brakes and the other does not.
-    constexpr double highest = std::numeric_limits<double>::infinity();
-    double const later_by = time_to_cover(conflict.other_lane_end - at, user.speed, pull_away, highest) -
-                            time_to_cover(conflict.lane_end - own.s, own.speed, pull_away, highest);
-    return std::abs(later_by) > 1e-6 ? later_by > 0.0 : is_smaller;
+    if (own.waited >= own.patience + turn + (arrival == Arrival::earlier ? for_order : 0.0)) return true;
   }
   if (arrival == Arrival::earlier && to_line < short_way) return false;
+  bool const is_decided = conflict.right_of_way != map::RightOfWay::equal;
+  bool const at_green = is_decided && lets_go(view, conflict.light) && lets_go(view, conflict.other_light);
   if (own_stands && !stands && !at_green && user.speed < starting_speed && to_line < short_way) return false;
-  if (is_decided) return has_way;
+  if (is_decided) return conflict.right_of_way == map::RightOfWay::first;
   return std::abs(own_way - way) > 2.0 ? own_way < way : is_smaller;
 }
 

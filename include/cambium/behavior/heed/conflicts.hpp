@@ -15,36 +15,40 @@
 
 namespace cambium {
 
-/// Crosses junctions by the rules of the road. The map knows where two ways through a junction conflict
-/// (`map::Conflict`):
+/// Crosses junctions by the rules of the road. The map knows where two ways conflict (`map::Conflict`), and which
+/// conflicts form a section that a vehicle passes as a whole, for nobody can stand between them:
 ///
 ///                |other|
-///          line  |  v  |
+///         place  |  v  |
 ///            |   |     |
 ///    own ->  |   |/////|  ->     zone: where the two bodies could touch
 ///            |   |     |
 ///
-/// For each conflict ahead, the driver predicts who comes (with its speed, or accelerating if that is worse, along the
-/// ways that its turn signal permits) and derives a claim: the conflict is free, must be watched, must be yielded, or
-/// is blocked. A vehicle inside the zone, or too fast to stop before it, blocks it unless it leaves in time. A vehicle
-/// that goes first (`detail::goes_first`) has the zone if the two times in it are less than `time_margin` apart. The
-/// strongest claim bounds the step so that the vehicle can stop at its line.
+/// A vehicle has entered a section once it is beyond the place where it waits for it, or can no longer stop there. For
+/// each conflict ahead, the driver predicts who comes (with its speed, or accelerating if that is worse, along the ways
+/// that its turn signal permits) and derives a claim: the conflict is free, must be watched, must be yielded, or is
+/// blocked. The strongest claim bounds the step so that the vehicle can stop at its place or before the zone.
 ///
-/// The driver enters a junction when it may go first in all its conflicts and there is room behind them; after 40 s
-/// more than its patience, even without room. Once it has left its place to wait, maybe well before the edge of the
-/// junction, it goes before all vehicles that are still outside. Of those that leave their places in the same step, the
-/// nearest goes (`detail::leaves_first`). At green it also enters to turn left, and waits inside for oncoming traffic.
-/// For lights, stop signs and bends it relies on `Bends` and `Signals`, to be heeded before this. Where neither
-/// priorities nor lights say who goes first, those who have stopped go in the order in which they came. In a deadlock
-/// one driver after the other loses its `patience` and goes. A driver that has waited 40 s more for others who go first
-/// drives up to the conflict: then it is inside the junction, and those who can still stop let it go, so that nobody
-/// waits forever.
+/// - Outside, a driver waits for all who have entered a section of theirs that conflicts with its own, unless they
+/// leave
+///   the zone in time, and for those who go first (`detail::goes_first`) and would be in the zone less than
+///   `time_margin` before or after it. It enters when it waits for nobody and there is room behind the section.
+/// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
+///   remembers who these are.
 ///
-/// Guarantee: as long as the vehicle can stop before a conflict, it does not enter while another vehicle is inside or
-/// can no longer stop. Of two vehicles that can both stop, one goes first, or both until one of them can no longer
-/// stop. So vehicles that all heed this do not collide. A collision remains possible with vehicles that change
-/// lanes in a junction, ignore its rules, or are observed where they are not. Conflicts depend on the sizes of the two
-/// vehicles, see `MapOptions::conflict_shape`.
+/// So nobody waits forever. Order all vehicles inside by the step in which they entered, then by their ids. Each waits
+/// only for earlier ones, or drives behind a leader, which entered before it or is behind the section, where there was
+/// room. So the earliest waits for nobody and leaves, and then the next one is the earliest. Nor do those outside wait
+/// for each other in a ring: of those who stand, each loses its patience at a time of its own. One whom all others keep
+/// outside, for they do not stand, goes before those who can stop with ease after 80 s more.
+///
+/// And nobody collides whom all see and who heeds this: a driver enters only if it can stop before a zone until those
+/// before it have left that, and those after it can stop before theirs, for they were outside. A collision remains
+/// possible with vehicles that change lanes in a junction, ignore its rules, or are observed where they are not.
+///
+/// At green one enters to turn left, too, and waits inside for oncoming traffic (`map::ConflictSection::refuge`). For
+/// lights, stop signs and bends it relies on `Bends` and `Signals`, to be heeded before this. Conflicts depend on the
+/// sizes of the two vehicles, see `MapOptions::conflict_shape`.
 struct Conflicts {
   double look_ahead = 80.0;
   double time_margin = 1.0;
@@ -79,14 +83,17 @@ struct Conflicts {
   }
 
   struct Memory {
-    float waited{};                           ///< time at a standstill before a junction, red lights apart [s]
-    detail::StandingAgents stopped_before{};  ///< those that stood there when it stopped, or that stand there now
+    float waited{};                 ///< time at a standstill before a section or in it, red lights apart [s]
+    std::uint16_t entered{};        ///< sections of the corridor that it has entered, and those before them
+    detail::AgentsBefore before{};  ///< those that came before it
 
     static constexpr char const* name = "conflicts_memory";
     static constexpr auto parameters() {
       using P = Memory;
       return parameter_list(parameter("waited", &P::waited, "s", any_finite, "at a standstill before a junction"),
-                            parameter("stopped_before", &P::stopped_before, "those that stood there"));
+                            parameter("entered", &P::entered, "-", Range{0, 65535},
+                                      "sections that it has entered, and those before them"),
+                            parameter("before", &P::before, "those that came before it"));
     }
 
     friend bool operator==(Memory const&, Memory const&) = default;
@@ -107,14 +114,15 @@ struct Conflicts {
     own.s = view.place().s;
     own.front = own.s + view.shape().front;
     own.waited = memory.waited;
-    own.stopped_before = &memory.stopped_before;
+    own.before = &memory.before;
+    own.entered = memory.entered;
     own.minimum_gap = law.minimum_gap;
     own.maximum_acceleration = law.maximum_acceleration;
     own.comfortable = law.comfortable_deceleration;
     own.hardest = -law.lowest_acceleration;
     heed_conflicts(view, own, limits, dt);
     remember(memory, own, limits.is_at_light, dt);
-    limits.bound(own.wait().bound);
+    limits.bound(own.wait.bound);
   }
 
  private:
@@ -129,44 +137,36 @@ struct Conflicts {
   struct Wait {
     LongitudinalMotion<double> bound{infinite, infinite};  ///< longest motion of this step
     bool at_line = false;                                  ///< has arrived there
-
-    void heed(Wait const& other) {
-      if (other.bound.distance < bound.distance) bound = other.bound;
-      at_line = at_line || other.at_line;
-    }
   };
 
   /// The own vehicle: its place, and its motion as bounded so far.
   struct Own : detail::ConflictAsker {
     double desired_speed{};                                                  ///< within the limits [m/s]
     double minimum_gap{}, maximum_acceleration{}, comfortable{}, hardest{};  ///< of its law [m, m/s^2]
-    double highest{};                   ///< highest speed within `view_ahead`, unless `is_far` [m/s]
-    std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
-    bool may_meet_large = false;        ///< large vehicles are, or were, in the world
-    bool meets_large = false;           ///< a large vehicle is next on its way to one of the conflicts, see `claims_of`
-    detail::StandingAgents standing{};  ///< others that stand at their lines
-    bool notes_standing = false;        ///< adds to `standing`
-    bool is_near_line = false;          ///< comes to a line within `detail::short_way`; asked if it has waited
-    bool is_inside_junction = false;    ///< asked if it has waited
-    bool is_far = false;                ///< no claim on a conflict can bound this step
-    bool is_settled = false;            ///< no claim on the conflict at hand can bound it further
-    map::Conflict const* stop{};        ///< a conflict before whose line it stops
-    double stop_line{};                 ///< that line [m]
+    double highest{};             ///< highest speed within `view_ahead`, unless `is_far` [m/s]
+    Wait wait{};                  ///< by all claims
+    detail::AgentsBefore now{};   ///< those that came before it, as from now on
+    std::uint32_t entered{};      ///< `Memory::entered`, of the step before
+    std::uint32_t entered_now{};  ///< and of this one
+    bool notes_standing = false;  ///< adds those that stand to `now`
+    bool is_near_line = false;    ///< comes to its place within `detail::short_way`
+    bool is_far = false;          ///< no claim on a conflict can bound this step
+    bool is_settled = false;      ///< no claim on the conflict at hand can bound it further
+    double stops_at = infinite;   ///< a place before which it stops [m]
 
-    [[nodiscard]] Wait const& wait() const { return waits[meets_large]; }
+    /// Whether it has entered the section in this step.
+    [[nodiscard]] bool enters_now() const { return has_entered && section >= entered; }
   };
 
-  /// Counts the time at a standstill, before the junction and within it. A driver that has begun to creep keeps its
-  /// place in the order.
+  /// Counts the time at a standstill, before a section and within it. A driver that has begun to creep keeps its place
+  /// in the order.
   static void remember(Memory& memory, Own const& own, bool is_red, double dt) {
-    if (own.speed > detail::starting_speed && (own.is_inside_junction || !own.is_near_line)) memory.waited = 0.0f;
-    bool const stands = own.speed < standing_speed && own.wait().at_line && !is_red;
-    if (memory.waited == 0.0f) {
-      auto const before = std::exchange(memory.stopped_before, own.standing);
-      if (stands) memory.stopped_before.mark_new(before);
-    }
-    if (!stands) return;
-    memory.waited += static_cast<float>(dt);
+    bool const is_inside = own.entered_now > 0;
+    if (own.entered_now > own.entered || (own.speed > detail::starting_speed && (is_inside || !own.is_near_line)))
+      memory.waited = 0.0f;
+    memory.entered = static_cast<std::uint16_t>(std::min(own.entered_now, 65535u));
+    memory.before = own.now;
+    if (own.speed < standing_speed && own.wait.at_line && !is_red) memory.waited += static_cast<float>(dt);
   }
 
   /// What a conflict demands, in ascending order.
@@ -199,25 +199,35 @@ struct Conflicts {
     for (; end != conflicts.end() && end->first_hold() <= farthest; ++end) {
       auto const& conflict = *end;
       if (conflict.hull().end < own.s) continue;
-      auto const& zones = conflict.zones[own.is_large];
-      if (own.waited > 0.0) {
-        own.is_near_line = own.is_near_line || zones[0].line - own.front < detail::short_way;
-        own.is_inside_junction = own.is_inside_junction || own.is_inside(conflict, zones[0]);
-      }
-      own.is_settled = own.is_far || stops_anyway(view, conflict, own);
-      bool const may_skip = own.is_far || (own.is_settled && !own.may_meet_large);
-      if (may_skip && !own.notes_standing && conflict.kind == map::OverlapKind::crossing) continue;
+      come_to(view, conflict, own);
+      own.is_settled = own.is_far || (!own.has_entered && own.stops_at <= own.place);
+      if (own.is_settled && !own.notes_standing && conflict.kind == map::OverlapKind::crossing) continue;
       auto const claims = claims_of(view, conflict, own, limits);
       for (std::size_t other = 0; other < 2; ++other)
-        if (claims[other] != Claim::free) obey(claims[other], conflict, other, view, own, dt);
+        if (claims[other] != Claim::free) obey(claims[other], conflict, other, own, view, dt);
     }
     bool const has_waited = own.waited > own.patience + longest_wait;  // maybe for the end of its own queue
     if (own.is_far || !keep_clear || has_waited || !is_in_queue(limits.constraint())) return;
     for (auto at = first; at != end; ++at) {
       auto const& zone = at->zones[own.is_large][0];
-      if (!zone.empty() && is_full_behind(view, zone, own, limits.constraint()))
-        obey(Claim::yield, *at, 0, view, own, dt);
+      if (zone.empty() || at->kind == map::OverlapKind::split) continue;
+      come_to(view, *at, own);
+      if (!own.has_entered && is_full_behind(view, zone, own, limits.constraint()))
+        obey(Claim::yield, *at, 0, own, view, dt);
     }
+  }
+
+  /// Sets what the own vehicle knows of the section that holds a conflict.
+  template <class View>
+  static void come_to(View const& view, map::Conflict const& conflict, Own& own) {
+    auto const& section = conflict.section[own.is_large][own.may_meet_large];
+    own.section = section.number;
+    own.place = section.place_to_wait(own.front - own.s, detail::lets_go(view, conflict.light));
+    own.has_entered = false;
+    if (conflict.kind == map::OverlapKind::split) return;  // nobody waits for it
+    own.has_entered = detail::has_entered(own.s, own.speed, own.place);
+    if (own.has_entered) own.entered_now = std::max(own.entered_now, own.section + 1);
+    own.is_near_line = own.is_near_line || own.place - own.s < detail::short_way;
   }
 
   /// Sets what is asked only where conflicts are ahead, `first` the nearest one.
@@ -227,7 +237,6 @@ struct Conflicts {
     own.may_meet_large = detail::is_large(view, view.largest_shape());
     own.patience = patience;
     own.dt = dt;
-    own.braking = safe_deceleration;
     own.notes_standing = own.waited == 0.0 && own.speed < detail::starting_speed;
     own.is_far = first.first_hold() - own.front > longest_stop(own, dt);
     own.highest = own.is_far ? own.desired_speed : std::min(own.desired_speed, highest);
@@ -257,89 +266,30 @@ struct Conflicts {
     return end * (dt + end / (2.0 * braking)) + stop_margin + at_line_within + air;
   }
 
-  /// Whether it stops anyway where a claim on this conflict would stop it, at the latest: before another conflict with
-  /// the same line and holds.
-  template <class View>
-  [[nodiscard]] static bool stops_anyway(View const& view, map::Conflict const& conflict, Own const& own) {
-    auto const& hold = conflict.hold[own.is_large];
-    if (!own.stop || own.stop->hold[own.is_large] != hold || may_wait_inside(view, conflict)) return false;
-    double const farthest = way_to_line(own, own.stop_line, hold[0]);
-    for (auto const& zone : conflict.zones[own.is_large])
-      if (!zone.empty() && (zone.line != own.stop_line || zone.begin - air - own.s < farthest)) return false;
-    return true;
-  }
-
-  /// Distance [m] to where it waits outside of the junction.
-  [[nodiscard]] static double way_to_line(Own const& own, double line, double hold) {
-    return std::min(line - own.front, hold - own.s);
-  }
-
-  template <class View>
-  [[nodiscard]] static bool may_wait_inside(View const& view, map::Conflict const& conflict) {
-    return conflict.right_of_way == map::RightOfWay::yields && detail::go_together(view, conflict);
-  }
-
   /// Bounds the step's motion by the claim of vehicles of the size `others` on a conflict.
   template <class View>
-  void obey(Claim claim, map::Conflict const& conflict, std::size_t others, View const& view, Own& own,
+  void obey(Claim claim, map::Conflict const& conflict, std::size_t others, Own& own, View const& view,
             double dt) const {
     auto const& zone = conflict.zones[own.is_large][others];
     double const to_conflict = zone.begin - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is inside already
-    if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) return;
-    bool const is_outside = !may_wait_inside(view, conflict);
-    double const inside = is_outside ? -infinite : place_inside(view, zone, own) - own.s;
-    double const braking = claim == Claim::watch ? safe_deceleration : waiting_deceleration(own);
-    auto const wait_at = [&](double hold) -> Wait {
-      double const to_hold = std::max(way_to_line(own, zone.line, hold), inside);
-      double const to_stop = distance_to_stop(view, claim, to_hold, own, to_conflict);
-      return {motion_before_stop(own.speed, to_stop, braking, own.hardest, dt), to_stop < at_line_within};
-    };
-    auto const& hold = conflict.hold[own.is_large];
-    auto const wait = wait_at(hold[0]);
-    own.waits[0].heed(wait);
-    own.waits[1].heed(hold[1] == hold[0] ? wait : wait_at(hold[1]));
-    double const nearer = way_to_line(own, zone.line, hold[1]), farther = way_to_line(own, zone.line, hold[0]);
-    bool const stops_at_line =
-        claim != Claim::watch && is_outside && nearer >= 0.0 && can_stop(own.speed, nearer) && farther <= to_conflict;
-    if (!stops_at_line) return;
-    own.stop = &conflict;
-    own.stop_line = zone.line;
-  }
-
-  /// Where the vehicle waits at green for oncoming traffic that has green too: inside the junction, before the zones of
-  /// all who go before it now [corridor position, m].
-  template <class View>
-  [[nodiscard]] static double place_inside(View const& view, map::ConflictZone const& zone, Own const& own) {
-    double place = zone.begin - air;
-    auto const covers = [&place](map::ConflictZone const& z) { return z.begin - air < place && place <= z.end; };
-    auto const& conflicts = view.corridor().conflicts;
-    for (bool is_covered = true; is_covered;) {
-      is_covered = false;
-      for (auto const& c : conflicts)
-        for (std::size_t const other : {0u, 1u}) {
-          auto const& z = c.zones[own.is_large][other];
-          if ((other == 1 && !own.meets_large) || !covers(z) || c.right_of_way != map::RightOfWay::yields ||
-              !detail::go_together(view, c))
-            continue;
-          place = z.begin - air;
-          is_covered = true;
-        }
+    double to_stop = to_conflict, braking = safe_deceleration;
+    if (claim != Claim::watch) {
+      braking = waiting_deceleration(own);
+      to_stop = own.has_entered ? distance_to_zone(view, own, to_conflict) : distance_to_place(own);
+      if (!own.has_entered) own.stops_at = std::min(own.stops_at, own.place);
     }
-    return place;
+    auto const bound = motion_before_stop(own.speed, to_stop, braking, own.hardest, dt);
+    if (bound.distance < own.wait.bound.distance) own.wait.bound = bound;
+    own.wait.at_line = own.wait.at_line || to_stop < at_line_within;
   }
 
-  /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the first zone ahead
-  /// of it, so that it stands in nobody's way. Up to the conflict itself if that will be free in time.
-  template <class View>
-  [[nodiscard]] double distance_to_stop(View const& view, Claim claim, double to_hold, Own const& own,
-                                        double to_conflict) const {
-    if (claim == Claim::watch) return to_conflict;
-    double const to_line = std::min(to_hold, to_conflict);
-    if (to_line < 0.0 || !can_stop(own.speed, to_line)) return distance_to_zone(view, own, to_conflict);
+  /// Distance to where it stops before a section that it has not entered: before its place if it still can [m].
+  [[nodiscard]] double distance_to_place(Own const& own) const {
+    double const way = own.place - own.s;
     for (double const margin : {stop_margin, air})
-      if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
-    return to_line;
+      if (can_stop(own.speed, way - margin)) return std::max(0.0, way - margin);
+    return std::max(0.0, way);
   }
 
   /// Distance [m] to the first zone ahead before which the vehicle can still stop, at most `to_conflict`; to the
@@ -351,20 +301,20 @@ struct Conflicts {
     for (auto const& c : view.corridor().conflicts)
       for (std::size_t const other : {0u, 1u}) {
         double const way = c.zones[own.is_large][other].begin - air - own.s;
-        if (c.kind == map::OverlapKind::split || (other == 1 && !own.meets_large) || way < 0.0) continue;
+        if (c.kind == map::OverlapKind::split || (other == 1 && !own.may_meet_large) || way < 0.0) continue;
         if (way < nearest && can_stop(own.speed, way)) nearest = way;
       }
     return nearest;
   }
 
   /// The strongest claims of the normal and of the large vehicles on their way to the conflict, if they can bound the
-  /// step. Adds merging leaders to the constraints.
+  /// step. Adds merging leaders to the constraints, and those who come first to `Own::now`.
   template <class View, class Limits>
   [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own& own,
                                                Limits& limits) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
-    detail::NextToEnter noted, asked;
-    bool is_known = own.speed >= detail::starting_speed;
+    bool is_known = own.speed >= detail::starting_speed || own.has_entered;
+    detail::NextToEnter asked;
     auto const first = [&]() -> std::optional<RoadUser> const& {
       if (!std::exchange(is_known, true)) asked = first_before(view, conflict, own);
       return asked.user;
@@ -373,40 +323,22 @@ struct Conflicts {
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
         if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
         bool const large = is_large(view, user, own);
-        auto const& zone = conflict.zones[own.is_large][large];
+        if (conflict.zones[own.is_large][large].empty()) return;
         double const at = way.begin + user.s - way.index_begin;
-        if (own.notes_standing) noted.offer(user, zone.other_line - at - user.front);
-        if (zone.empty()) return;
-        // Where all go in the order in which they came, a truck in the queue of another way comes later.
-        auto const comes_next = [&] {
-          if (own.is_large || at > zone.other_begin || !detail::is_by_arrival(view, conflict)) return true;
-          return !first() || first()->agent == user.agent;
-        };
-        own.meets_large = own.meets_large || (large && comes_next());
         auto const is_behind_slow = [&] {
           return first() && first()->speed < detail::starting_speed && first()->agent != user.agent;
         };
         Other const other{user, at, detail::extra_reach(view, large, user.front, user.rear),
                           own.waited >= own.patience && is_behind_slow()};
-        claims[large] = std::max(claims[large], claim_of(view, conflict, large, other, own, limits, claims[large]));
+        bool const is_next = own.waited == 0.0 ? own.notes_standing && first() && first()->agent == user.agent : true;
+        claims[large] = std::max(claims[large], claim_of(view, conflict, large, other, own, limits, is_next));
       });
-    note_standing(view, conflict, noted.user, own);
     return claims;
   }
 
   template <class View>
   [[nodiscard]] static bool is_large(View const& view, RoadUser const& user, Own const& own) {
     return own.may_meet_large && detail::is_large(view, view.shape(user));
-  }
-
-  /// Notes the vehicle that is next to enter the junction on the conflict's way if it stands, or has stood, at its
-  /// line.
-  template <class View>
-  static void note_standing(View const& view, map::Conflict const& conflict, std::optional<RoadUser> const& first,
-                            Own& own) {
-    if (first && (first->speed < standing_speed || own.stopped_before->holds(first->agent)) &&
-        view.signals_way(*first, conflict.other))
-      own.standing.add(first->agent);
   }
 
   /// The vehicle that is next to enter the junction on a conflict's way.
@@ -423,61 +355,102 @@ struct Conflicts {
     return first;
   }
 
-  /// The claim of one vehicle on its way, if it is stronger than `known`.
+  /// The claim of one vehicle on its way.
   template <class View, class Limits>
-  [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, bool large, Other other, Own const& own,
-                               Limits& limits, Claim known) const {
+  [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, bool large, Other other, Own& own,
+                               Limits& limits, bool is_next) const {
     auto const& zone = conflict.zones[own.is_large][large];
-    auto const& [user, at, reach, behind_slow, hold] = other;
+    auto const& [user, at, reach, behind_slow, place] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at, own_way = zone.begin - own.s;
     bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0, splits = conflict.kind == map::OverlapKind::split;
     bool const may_lead = conflict.kind != map::OverlapKind::crossing && (is_in || splits);
-    if (own.is_settled && !may_lead) return Claim::free;
+    if (own.is_settled && !may_lead && !own.notes_standing) return Claim::free;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     if (may_lead) {
-      double const place = at + conflict.shift, gap = place - user.rear - own.front;
-      if (place > own.s && (gap > 0.0 || own_is_in)) {
+      double const there = at + conflict.shift, gap = there - user.rear - own.front;
+      if (there > own.s && (gap > 0.0 || own_is_in)) {
         auto leader = detail::constraint_beside<typename Limits::Response>(view, user);
         leader.gap = gap;
         limits.heed(leader);
       }
-      if (gap > 0.0 || splits || own.is_settled) return Claim::free;
+      if (gap > 0.0 || splits) return Claim::free;
     }
     if (own_is_in) return Claim::free;
-    bool const enters = is_in || !can_stop(user.speed, way);
-    if (!enters && known >= Claim::yield) return Claim::free;
-    other.hold = view.waiting_place(user, conflict.other, large);
-    if (enters) {
-      double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
-      if (conflict.kind == map::OverlapKind::merge)
-        end = std::min(end, zone.begin + view.shape().front + own.minimum_gap + user.rear - conflict.shift);
-      // One that is in the zone, but has yet to enter the junction, may stop where it is.
-      bool const goes = other.has_entered(zone) || !can_stop(user.speed, zone.other_line - at - user.front);
-      bool const leaves = goes && user.speed >= standing_speed;
-      double const out = leaves ? time_to_cover(end - at, user.speed, detail::pull_away, infinite) : infinite;
-      return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
+    auto const section = view.section(user, conflict, large, own.may_meet_large);
+    if (section) other.place = section->place_to_wait(user.front, detail::lets_go(view, conflict.other_light));
+    bool const has_entered = section ? detail::has_entered(at, user.speed, place) : is_in || !can_stop(user.speed, way);
+    auto const key = detail::section_key(user.agent, section ? section->number : 0, own.section);
+    bool const is_first = comes_first(view, user, key, has_entered, is_next, own);
+    if (own.is_settled) return Claim::free;
+    if (own.has_entered) {
+      // Those who come later wait; whoever does not is let through.
+      double const until = way + detail::over_line;
+      bool const intrudes = until < 0.0 || !cambium::can_stop(user.speed, until, 1.5 * detail::judged_deceleration);
+      if (!is_first && !intrudes) return Claim::free;
+      bool const stands = user.speed < standing_speed && !is_in;
+      if (stands && own.waited > (view.id() < user.agent ? 10.0 : 20.0)) return Claim::free;
+      return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
     }
-    if (detail::goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
-    return claim_in_time(conflict, zone, other, way, own_way, own);
+    if (own.now.is_full_of_entered()) return Claim::blocked;
+    bool const yields = conflict.right_of_way == map::RightOfWay::yields && !detail::is_by_arrival(view, conflict);
+    bool const is_red = is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red;
+    if (has_entered || (yields && !is_red && detail::is_about_to_enter(other, own.dt)))
+      return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
+    if (detail::goes_first(view, conflict, zone, other, key, way, own_way, own)) return Claim::free;
+    return claim_in_time(zone, other, way, own_way, own);
   }
 
-  /// The claim of a vehicle that goes first and arrives at the zone after `way` [m].
-  [[nodiscard]] Claim claim_in_time(map::Conflict const& conflict, map::ConflictZone const& zone, Other const& other,
-                                    double way, double own_way, Own const& own) const {
-    auto const& [user, at, reach, behind_slow, hold] = other;
+  /// Whether another vehicle has entered before the own one. Notes it in `Own::now` if it has, or if it stands where
+  /// it waits and the own one has just stopped, too.
+  template <class View>
+  [[nodiscard]] static bool comes_first(View const& view, RoadUser const& user, detail::SectionKey key,
+                                        bool has_entered, bool is_next, Own& own) {
+    bool const had_entered = own.before->holds_entered(key);
+    if (!has_entered) {
+      bool const was_there = own.before->holds(key);
+      bool const stays = own.waited == 0.0 ? is_next && (user.speed < standing_speed || was_there) : was_there;
+      bool const together = own.waited == 0.0 ? !was_there : own.before->holds_together(key);
+      if (!own.has_entered && stays) own.now.add(key, false, together);
+      return false;
+    }
+    if (!own.has_entered) {
+      own.now.add(key, true, false);
+      return true;
+    }
+    bool const together = own.enters_now() ? !had_entered : own.before->holds_together(key);
+    if (!own.enters_now() && !had_entered) return false;
+    own.now.add(key, true, together);
+    return !together || user.agent < view.id();
+  }
+
+  /// The claim of a vehicle that has entered its section: until it has left the zone, or leads where the two merge.
+  template <class View>
+  [[nodiscard]] Claim claim_until_left(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
+                                       Other const& other, bool has_entered, double own_way, Own const& own) const {
+    auto const& user = other.user;
+    double end = zone.other_end + other.reach.rear;  // where it leaves room for the own vehicle
+    if (conflict.kind == map::OverlapKind::merge)
+      end = std::min(end, zone.begin + view.shape().front + own.minimum_gap + user.rear - conflict.shift);
+    bool const leaves = has_entered && user.speed >= standing_speed;
+    double const out = leaves ? time_to_cover(end - other.at, user.speed, detail::pull_away, infinite) : infinite;
+    return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
+  }
+
+  /// The claim of a vehicle that goes first, has not entered yet, and arrives at the zone after `way` [m]. Who has
+  /// waited long takes a gap up to a second shorter, and after `longest_wait` any before one that can stop with ease.
+  [[nodiscard]] Claim claim_in_time(map::ConflictZone const& zone, Other const& other, double way, double own_way,
+                                    Own const& own) const {
+    auto const& [user, at, reach, behind_slow, place] = other;
+    double const impatience = std::clamp((own.waited - own.patience) / 30.0, 0.0, 1.0);
+    double const margin = std::max(0.0, time_margin - impatience);
     Window const theirs{
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.desired_speed)),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};
     Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
-    bool const is_in = other.is_inside(conflict, zone);
-    if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
-    double const length = way + zone.other_end - zone.other_begin + reach.front + reach.rear;
-    if (is_in && user.speed >= standing_speed &&
-        time_to_cover(length, user.speed, detail::pull_away, infinite) + 0.5 * time_margin < ours.begin)
-      return Claim::watch;
-    if (ours.end + time_margin < theirs.begin && !is_in) return Claim::free;
-    return own.waited > own.patience + longest_wait ? Claim::watch : Claim::yield;
+    if (theirs.end + margin < ours.begin || ours.end + margin < theirs.begin) return Claim::free;
+    bool const stops_with_ease = cambium::can_stop(user.speed, place - at, 2.0);
+    return own.waited > own.patience + 2.0 * longest_wait && stops_with_ease ? Claim::free : Claim::yield;
   }
 
   /// Earliest time [s] at which the own vehicle has driven `distance` [m].

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -88,25 +89,46 @@ struct ConflictZone {
 /// to `MapOptions::large_conflict_shape`.
 using ConflictZones = std::array<std::array<ConflictZone, 2>, 2>;
 
+/// Conflicts that a vehicle passes as a whole, see `Conflict`.
+struct ConflictSection {
+  std::uint32_t number = 0;  ///< along the corridor
+  double hold{};             ///< up to where reference points are in no zone of the section [m]
+  double line = std::numeric_limits<double>::infinity();  ///< up to where front ends wait: where a junction begins [m]
+  double refuge = -std::numeric_limits<double>::infinity();  ///< up to where reference points wait at green [m]
+
+  /// Where the reference point of a vehicle waits whose front end is `front` [m] ahead of it; `at_green`: its own light
+  /// says go.
+  [[nodiscard]] double place_to_wait(double front, bool at_green) const {
+    double const outside = std::min(hold, line - front);
+    return at_green ? std::max(outside, refuge) : outside;
+  }
+};
+
 /// Where a lane outside of the corridor crosses it, merges with it or parts from it.
+///
+/// Conflicts between which nobody can stand form a section: a vehicle passes it as a whole, and waits before it.
+///
+///        hold            refuge
+///     ->  |  //zone//   /zone/  |  //zone//  /zone/   ->
+///          \_______ section 0 _/ \___ section 1 ___/
+///
+/// A section may have a refuge: a place within it where one who turns at green waits for oncoming traffic. From there
+/// on it counts as a section of its own, before which one waits at the refuge while one's own light says go, and
+/// otherwise where the whole begins.
 struct Conflict {
-  LaneId other = none<LaneId>;
+  LaneId lane = none<LaneId>, other = none<LaneId>;  ///< of the corridor, and the one outside of it
   OverlapKind kind = OverlapKind::crossing;
   RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
   bool is_signed = false;                       ///< priorities or signs say who goes first, or both have priority
   ConflictZones zones;                          ///< that of two large ones holds all others and is not empty
-  /// Corridor position up to which reference points are in no zone of the junction, by the size of the corridor's
-  /// vehicle and whether large vehicles are among the others: there one waits. No farther for large ones [m].
-  std::array<std::array<double, 2>, 2> hold{};
+  /// The section that it is in, by the size of the corridor's vehicle and whether large vehicles are among the others.
+  std::array<std::array<ConflictSection, 2>, 2> section;
   double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
 
   /// The zone of two large vehicles, which holds all others.
   [[nodiscard]] ConflictZone const& hull() const { return zones[1][1]; }
-  /// Where everybody is before the junction's zones: no place to wait lies before it [m].
-  [[nodiscard]] double first_hold() const { return hold[1][1]; }
-  /// Where a vehicle waits that must leave room for large ones, and for those of its own size [m].
-  [[nodiscard]] double hold_for_all(bool is_large) const { return hold[is_large][1]; }
-  [[nodiscard]] double hold_among_equals(bool is_large) const { return hold[is_large][is_large]; }
+  /// Nobody waits so that its front end is before this [m].
+  [[nodiscard]] double first_hold() const { return std::min(section[1][1].hold, section[1][1].line); }
   double farthest_end{};                ///< of the hulls of this one and those before it in the corridor [m]
   LightId light = none<LightId>;        ///< that stops the corridor's traffic
   LightId other_light = none<LightId>;  ///< that stops the other's traffic
@@ -184,14 +206,26 @@ struct LaneCorridor {
   /// The speed limit at `s`; infinite where there is none. [m/s], O(log steps).
   [[nodiscard]] double speed_limit_at(double s) const { return map::speed_limit_at(speed_limits, s); }
 
-  /// Where a vehicle waits before the junction of `lane` for others of its size (see `Conflict::hold`): a position on
-  /// the lane's path, negative before the lane; infinite where it meets nobody there. [m], O(pieces + conflicts).
-  [[nodiscard]] double hold_before(LaneId lane, bool is_large) const {
-    for (auto const& piece : pieces)
-      if (piece.lane == lane)
-        for (auto const& conflict : conflicts)
-          if (conflict.lane_end == piece.end) return conflict.hold_among_equals(is_large) + piece.lane_offset;
-    return std::numeric_limits<double>::infinity();
+  /// The section of this corridor's traffic that holds `conflict` of another corridor, as positions on the path of the
+  /// conflict's other lane, negative before it; nothing where this corridor does not pass it. O(pieces + conflicts).
+  [[nodiscard]] std::optional<ConflictSection> section_of(Conflict const& conflict, bool is_large,
+                                                          bool others_large) const {
+    std::optional<ConflictSection> found;
+    double least = std::numeric_limits<double>::infinity();
+    for (auto const& piece : pieces) {
+      if (piece.lane != conflict.other) continue;
+      for (auto const& own : conflicts) {
+        if (own.lane_end != piece.end || own.other != conflict.lane) continue;
+        double const apart = std::abs(own.hull().begin + piece.lane_offset - conflict.hull().other_begin);
+        if (apart >= least) continue;
+        least = apart;
+        found = own.section[is_large][others_large];
+        found->hold += piece.lane_offset;
+        found->line += piece.lane_offset;
+        found->refuge += piece.lane_offset;
+      }
+    }
+    return found;
   }
 
   /// Distances from the centre line to the lane's borders at `s` [m]. O(log n).

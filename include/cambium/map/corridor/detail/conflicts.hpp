@@ -12,6 +12,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/portable_math.hpp"
 #include "cambium/core/stable_sort.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/corridor/detail/conflict_ways.hpp"
@@ -25,12 +26,12 @@
 /// overlap is first widened to the range in which bodies could touch at all. `TouchingBodies` then tries the small and
 /// the large body of `MapOptions` at places along that range, for each pair of sizes, and returns zones: an interval on
 /// the corridor and one on the other way. Lanes of a junction whose paths keep apart are tried as well, for long
-/// vehicles swing out in bends. The rest follows from the zones: `line`, where front ends enter; `hold`, where to wait
-/// before the first zone of the junction; and the ways by which the others come.
+/// vehicles swing out in bends. The rest follows from the zones: `line`, where front ends enter; the sections, chains
+/// of zones between which nobody can stand, and where to wait before each; and the ways by which the others come.
 ///
 /// Drivers on the other lane see the same conflict from their corridor. Both sides must find the same zones, else two
-/// drivers may wait for each other for ever. That is why zones without room to wait between them become one, also
-/// across the borders of lane sections (`unite`).
+/// drivers may wait for each other for ever. That is why zones of two lanes without room to wait between them become
+/// one, also across the borders of lane sections (`unite`).
 namespace cambium::map::detail {
 
 /// Finds the conflicts of a lane corridor whose centre line and pieces are known, see `Conflict`.
@@ -52,7 +53,7 @@ class ConflictFinder {
       conflicts.push_back(std::move(conflict));
     }
     for (std::size_t own : {0u, 1u})
-      for (std::size_t others : {0u, 1u}) set_holds(conflicts, own, others);
+      for (std::size_t others : {0u, 1u}) set_sections(conflicts, own, others);
     sort(conflicts);
     return conflicts;
   }
@@ -80,6 +81,7 @@ class ConflictFinder {
     if (overlap.kind == OverlapKind::merge && !is_valid(junction_of(piece.lane))) return;
     auto const position = [&](double s) { return std::clamp(s - piece.lane_offset, piece.begin, piece.end); };
     Conflict conflict;
+    conflict.lane = piece.lane;
     conflict.other = overlap.other;
     conflict.kind = kind_of(map_.lane(piece.lane), overlap);
     conflict.right_of_way = right_of_way(map_, piece.lane, overlap);
@@ -266,7 +268,8 @@ class ConflictFinder {
         zone.line = std::min(zone.begin + body(own).front, begin);
         zone.other_line = std::min(zone.other_begin + body(other).front, other_begin);
       }
-    conflict.hold = {{{begin, begin}, {begin, begin}}};
+    for (auto& sections : conflict.section)
+      for (auto& section : sections) section.line = begin;
     double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
     conflict.ways =
         ways_through(map_, map_.lane(conflict.other), conflict.hull().other_begin - view, conflict.hull().other_end);
@@ -281,32 +284,56 @@ class ConflictFinder {
     for (auto& conflict : conflicts) conflict.farthest_end = end = std::max(end, conflict.hull().end);
   }
 
-  /// Sets the places to wait, by size of the own vehicle and the others, from where, as yet, the junctions begin:
-  /// before the first zone of the same junction, or of one before it that reaches so far.
-  static void set_holds(std::vector<Conflict>& conflicts, std::size_t own, std::size_t others) {
-    constexpr double near = 2.0;  // [m] one may wait so much earlier
-    auto const first_zone = [=](Conflict const& conflict) {
-      auto const& zones = conflict.zones[own];
-      return others == 0 ? zones[0].begin : std::min(zones[0].begin, zones[1].begin);
+  /// Whether the corridor's traffic, where lights let both go, waits for traffic that comes towards it.
+  [[nodiscard]] bool waits_for_oncoming(Conflict const& conflict) const {
+    if (conflict.right_of_way != RightOfWay::yields || !is_valid(conflict.light) || !is_valid(conflict.other_light))
+      return false;
+    auto const heading = [&](LaneId lane) { return map_.lane(lane).path.pose(0.0).heading; };
+    return std::abs(geometry::angle_difference(heading(conflict.other), heading(conflict.lane))) > 0.75 * geometry::pi;
+  }
+
+  /// Sets the sections, by size of the own vehicle and the others; `line` says where the junction begins.
+  void set_sections(std::vector<Conflict>& conflicts, std::size_t own, std::size_t others) const {
+    constexpr double room = 2.0;  // [m] to stand between two zones
+    constexpr double nowhere = std::numeric_limits<double>::infinity();
+    struct Member {
+      double begin, end;  // of its zones
+      Conflict* conflict;
     };
-    auto const last_end = [=](Conflict const& conflict) {
-      auto const& zones = conflict.zones[own];
-      return others == 0 ? zones[0].end : std::max(zones[0].end, zones[1].end);
-    };
-    std::map<double, double> holds;  // by where the junction begins
-    for (auto const& conflict : conflicts) {
-      double const begin = conflict.hold[own][others];
-      auto& hold = holds.emplace(begin, begin).first->second;
-      hold = std::min(hold, first_zone(conflict));
-    }
-    for (auto& [begin, hold] : holds)
-      for (auto const& before : conflicts)
-        if (double const from = before.hold[own][others];
-            from < begin && before.kind == OverlapKind::crossing && last_end(before) > hold - near)
-          hold = std::min(hold, holds.at(from));
+    std::vector<Member> members;
     for (auto& conflict : conflicts) {
-      double& hold = conflict.hold[own][others];
-      hold = std::isfinite(hold) ? holds.at(hold) : first_zone(conflict);
+      auto const& zones = conflict.zones[own];
+      Member member{zones[0].begin, zones[0].end, &conflict};
+      if (others != 0) {
+        member.begin = std::min(member.begin, zones[1].begin);
+        member.end = std::max(member.end, zones[1].end);
+      }
+      auto& section = conflict.section[own][others];
+      if (conflict.kind != OverlapKind::split && member.begin <= member.end)
+        members.push_back(member);
+      else
+        section = {0, conflict.hull().begin};  // nobody waits for it
+    }
+    cambium::detail::stable_sort(members, &Member::begin);
+    double before = -nowhere;  // where the section before ends
+    std::uint32_t number = 0;
+    for (auto first = members.begin(); first != members.end();) {
+      double end = first->end, line = nowhere, refuge = nowhere;
+      auto last = first;
+      for (; last != members.end() && last->begin < end + room; ++last) {
+        end = std::max(end, last->end);
+        line = std::min(line, last->conflict->section[own][others].line);
+        if (waits_for_oncoming(*last->conflict)) refuge = std::min(refuge, last->begin);
+      }
+      double const hold = first->begin;
+      if (line - body(own).front < before + room) line = nowhere;
+      bool const has_refuge = refuge < nowhere && refuge > std::min(hold, line - body(own).front) + room;
+      for (; first != last; ++first) {
+        bool const beyond = has_refuge && first->begin >= refuge;
+        first->conflict->section[own][others] = {number + (beyond ? 1u : 0u), hold, line, beyond ? refuge : -nowhere};
+      }
+      number += has_refuge ? 2 : 1;
+      before = end;
     }
   }
 
