@@ -210,9 +210,9 @@ struct Conflicts {
     if (own.is_far || !keep_clear || has_waited || !is_in_queue(limits.constraint())) return;
     for (auto at = first; at != end; ++at) {
       auto const& zone = at->zones[own.is_large][0];
-      if (zone.empty() || at->kind == map::OverlapKind::split) continue;
       come_to(view, *at, own);
-      if (!own.has_entered && is_full_behind(view, zone, own, limits.constraint()))
+      if (!zone.empty() && own.section != map::ConflictSection::none && !own.has_entered &&
+          is_full_behind(view, zone, own, limits.constraint()))
         obey(Claim::yield, *at, 0, own, view, dt);
     }
   }
@@ -224,7 +224,7 @@ struct Conflicts {
     own.section = section.number;
     own.place = section.place_to_wait(own.front - own.s, detail::lets_go(view, conflict.light));
     own.has_entered = false;
-    if (conflict.kind == map::OverlapKind::split) return;  // nobody waits for it
+    if (own.section == map::ConflictSection::none) return;
     own.has_entered = detail::has_entered(own.s, own.speed, own.place);
     if (own.has_entered) own.entered_now = std::max(own.entered_now, own.section + 1);
     own.is_near_line = own.is_near_line || own.place - own.s < detail::short_way;
@@ -272,7 +272,7 @@ struct Conflicts {
             double dt) const {
     auto const& zone = conflict.zones[own.is_large][others];
     double const to_conflict = zone.begin - air - own.s;
-    if (to_conflict + air < 0.0) return;  // it is inside already
+    if (to_conflict + air < -detail::over_line) return;  // it is inside already
     double to_stop = to_conflict, braking = safe_deceleration;
     if (claim != Claim::watch) {
       braking = waiting_deceleration(own);
@@ -363,7 +363,8 @@ struct Conflicts {
     auto const& [user, at, reach, behind_slow, place] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at, own_way = zone.begin - own.s;
-    bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0, splits = conflict.kind == map::OverlapKind::split;
+    bool const is_in = way <= 0.0, own_is_in = own_way <= -detail::over_line,
+               splits = conflict.kind == map::OverlapKind::split;
     bool const may_lead = conflict.kind != map::OverlapKind::crossing && (is_in || splits);
     if (own.is_settled && !may_lead && !own.notes_standing) return Claim::free;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;

@@ -91,8 +91,10 @@ using ConflictZones = std::array<std::array<ConflictZone, 2>, 2>;
 
 /// Conflicts that a vehicle passes as a whole, see `Conflict`.
 struct ConflictSection {
-  std::uint32_t number = 0;  ///< along the corridor
-  double hold{};             ///< up to where reference points are in no zone of the section [m]
+  static constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+
+  std::uint32_t number = none;  ///< along the corridor; none where nobody waits
+  double hold{};                ///< up to where reference points are in no zone of the section [m]
   double line = std::numeric_limits<double>::infinity();  ///< up to where front ends wait: where a junction begins [m]
   double refuge = -std::numeric_limits<double>::infinity();  ///< up to where reference points wait at green [m]
 

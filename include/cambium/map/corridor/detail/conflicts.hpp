@@ -312,7 +312,7 @@ class ConflictFinder {
       if (conflict.kind != OverlapKind::split && member.begin <= member.end)
         members.push_back(member);
       else
-        section = {0, conflict.hull().begin};  // nobody waits for it
+        section = {ConflictSection::none, conflict.hull().begin};
     }
     cambium::detail::stable_sort(members, &Member::begin);
     double before = -nowhere;  // where the section before ends
