@@ -136,24 +136,45 @@ TEST_CASE("without signs, only lights that are on for both ways keep drivers fro
     }
 }
 
-TEST_CASE("of two drivers about to leave their places in the same step, one leaves first: the nearer, the smaller id") {
-  map::Conflict conflict;
-  conflict.hold = {{{10.0, 10.0}, {10.0, 10.0}}};
-  auto const leaves_first = [&](double way, double other_way, bool is_smaller) {
-    RoadUser const user{.speed = 1.0};
+TEST_CASE("of two drivers about to enter in the same step, one enters first: the nearer, the smaller id") {
+  auto const enters_first = [&](double way, double other_way, bool is_smaller, double speed = 1.0) {
+    RoadUser const user{.speed = speed};
     detail::ConflictUser const other{user, 10.0 - other_way, {}, false, 10.0};
     detail::ConflictAsker own;
     own.s = 10.0 - way;
-    own.speed = 1.0;
+    own.place = 10.0;
     own.dt = 0.2;
-    own.braking = 3.0;
-    return detail::leaves_first(conflict, other, own, is_smaller);
+    return detail::enters_first(other, own, is_smaller);
   };
-  for (bool const is_smaller : {true, false}) {  // both still stop within 0.17 m, but no longer after the step
-    CHECK(leaves_first(0.3, 0.2, is_smaller));
-    CHECK_FALSE(leaves_first(0.2, 0.3, is_smaller));
-    CHECK(leaves_first(0.2, 0.2, is_smaller) == !is_smaller);
+  for (bool const is_smaller : {true, false}) {  // they still stop within 0.17 m, but maybe no longer after the step
+    CHECK(enters_first(0.3, 0.2, is_smaller));
+    CHECK_FALSE(enters_first(0.2, 0.3, is_smaller));
+    CHECK(enters_first(0.2, 0.2, is_smaller) == !is_smaller);
+    CHECK_FALSE(enters_first(3.0, 2.0, is_smaller));       // it can stop after the step, too
+    CHECK_FALSE(enters_first(0.3, 0.2, is_smaller, 0.0));  // it stands
   }
+}
+
+TEST_CASE("a driver remembers who came before it, rather those who have entered") {
+  detail::AgentsBefore list;
+  auto const key = [](std::uint32_t id) { return detail::section_key(AgentId{id}, 3, 1); };
+  for (std::uint32_t id = 0; id < 9; ++id) list.add(key(id), false, id == 2);
+  CHECK(list.arrival_of(key(1)) == detail::Arrival::earlier);
+  CHECK(list.arrival_of(key(2)) == detail::Arrival::together);
+  CHECK(list.arrival_of(key(8)) == detail::Arrival::earlier);  // full: it may be
+  CHECK_FALSE(list.holds(key(8)));
+  for (std::uint32_t id = 10; id < 17; ++id) {
+    CHECK_FALSE(list.is_full_of_entered());
+    list.add(key(id), true, id == 11);
+    CHECK(list.holds_entered(key(id)));
+    CHECK(list.holds_together(key(id)) == (id == 11));
+  }
+  CHECK(list.is_full_of_entered());
+  CHECK_FALSE(list.holds(key(1)));
+  list.add(key(20), true, false);
+  CHECK_FALSE(list.holds(key(20)));
+  CHECK_FALSE(list.holds(detail::section_key(AgentId{10}, 2, 1)));  // another section of the same vehicle
+  CHECK(detail::AgentsBefore{}.arrival_of(key(1)) == detail::Arrival::later);
 }
 
 TEST_CASE("the vehicle from the right goes first, whatever the ids and the distances") {
@@ -272,7 +293,7 @@ TEST_CASE("drivers stop at red and go at green; without a plan for the light the
 
 TEST_CASE(
     "a driver that turns left at green waits for oncoming traffic within the junction, as far as it blocks nobody") {
-  constexpr double air = 0.3, margin = 1.0;  // [m] before a conflict, and before the place to wait
+  constexpr double margin = 1.0;  // [m] before the place to wait
   Crossing const crossing;
   for (int arm = 1; arm <= 4; ++arm) {
     CAPTURE(arm);
@@ -297,8 +318,8 @@ TEST_CASE(
     // Tried out in steps of 1 mm: the farthest place outside of them, before each.
     double farthest = 1e9;
     for (auto const& zone : zones) {
-      double place = zone.begin - air;
-      while (std::ranges::any_of(zones, [&](auto const& z) { return z.begin - air < place && place <= z.end; }))
+      double place = zone.begin;
+      while (std::ranges::any_of(zones, [&](auto const& z) { return z.begin < place && place <= z.end; }))
         place -= 1e-3;
       farthest = std::min(farthest, place);
     }

@@ -172,15 +172,52 @@ TEST_CASE("conflicts are in the order in which one has to wait for them, and kno
       double hold = -std::numeric_limits<double>::infinity(), end = hold;
       for (auto const& conflict : passage.corridor->conflicts) {
         end = std::max(end, conflict.hull().end);
-        CHECK(conflict.hold[1][1] >= hold);
-        for (std::size_t i : {0u, 1u}) {
-          CHECK(conflict.hold[1][i] <= conflict.hold[0][i]);
-          CHECK(conflict.hold[i][1] <= conflict.hold[i][0]);
-          CHECK(conflict.hold[i][0] <= conflict.zones[i][0].begin);
-        }
-        CHECK(conflict.hold[1][1] <= conflict.hull().begin);
+        CHECK(conflict.first_hold() >= hold);
+        CHECK(conflict.first_hold() <= conflict.hull().begin);
         CHECK(conflict.farthest_end == end);
-        hold = conflict.hold[1][1];
+        hold = conflict.first_hold();
       }
     }
+}
+
+// A section's place is clear of all zones, of those of other sections, too; and so is a refuge of those that are
+// yielded to oncoming traffic.
+TEST_CASE("where one waits for a section one is in nobody's way") {
+  int sections = 0, refuges = 0;
+  for (auto const& [name, map] : junction_maps())
+    for (auto const& [lane, passage] : passages(*map)) {
+      CAPTURE(name);
+      auto const& conflicts = passage.corridor->conflicts;
+      for (std::size_t own : {0u, 1u})
+        for (std::size_t others : {0u, 1u}) {
+          double const front = own ? geometry::truck().front : geometry::car().front;
+          auto const zone = [=](map::Conflict const& c) {
+            auto zone = c.zones[own][0];
+            if (others == 0 || c.zones[own][1].empty()) return zone;
+            zone.begin = std::min(zone.begin, c.zones[own][1].begin);
+            zone.end = std::max(zone.end, c.zones[own][1].end);
+            return zone;
+          };
+          for (auto const& conflict : conflicts) {
+            auto const& section = conflict.section[own][others];
+            if (section.number == map::ConflictSection::none) {
+              CHECK((conflict.kind == map::OverlapKind::split || zone(conflict).empty()));
+              continue;
+            }
+            ++sections;
+            double const place = section.place_to_wait(front, false), refuge = section.place_to_wait(front, true);
+            CHECK(refuge >= place);
+            refuges += refuge > place;
+            CHECK(refuge <= zone(conflict).begin);
+            for (auto const& c : conflicts) {
+              if (c.section[own][others].number == map::ConflictSection::none) continue;
+              CHECK_FALSE((place > zone(c).begin && place < zone(c).end));
+              bool const is_same = c.section[own][others].number == section.number;
+              if (is_same) CHECK(c.section[own][others].place_to_wait(front, false) == place);
+            }
+          }
+        }
+    }
+  CHECK(sections > 100);
+  CHECK(refuges > 0);
 }

@@ -120,8 +120,9 @@ struct ViewArchetype {
   [[nodiscard]] double acceleration(RoadUser const& agent) const;  ///< over the last step, along its heading [m/s^2]
   [[nodiscard]] geometry::Polygon const& outline(RoadUser const& object) const;
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const;  ///< its turn signal permits that way
-  /// The section that it is in at a conflict, with positions on the way by which it comes (see
-  /// `map::LaneCorridor::section_of`); nothing where its turn signals show another way.
+  /// The section that it is in at a conflict, with positions on the way by which it comes; the sizes are
+  /// its own, that of this agent, and the largest (see `map::LaneCorridor::section_of`). Nothing where its turn signals
+  /// show another way.
   [[nodiscard]] std::optional<map::ConflictSection> section(RoadUser const& user, map::Conflict const& conflict,
                                                             bool is_large, bool others_large) const;
   ///@}

@@ -228,15 +228,15 @@ class ObservedWorld {
   }
 
   /// The section that an agent is in at a conflict of this agent's corridor, with positions on the way by which it
-  /// comes (see `map::LaneCorridor::section_of`). Nothing for objects, and where its turn signals show another way.
-  /// O(lanes and conflicts of its road).
+  /// comes; the sizes are its own, that of this agent, and the largest (see `map::LaneCorridor::section_of`). Nothing
+  /// for objects, and where its turn signals show another way. O(lanes and conflicts of its road).
   [[nodiscard]] std::optional<map::ConflictSection> section(RoadUser const& user, map::Conflict const& conflict,
-                                                            bool is_large, bool others_large) const {
+                                                            bool is_large, bool own_large, bool any_large) const {
     if (!is_valid(user.agent)) return std::nullopt;
     auto const& road = *world_->roster().agents[index_of(user.slot)].road;
     auto const corridor = road.corridor_of(conflict.other);
     if (corridor == none<CorridorId>) return std::nullopt;
-    return road.corridors[corridor].section_of(conflict, is_large, others_large);
+    return road.corridors[corridor].section_of(conflict, is_large, own_large, any_large);
   }
 
   /// Returns a separate world, as this agent sees it, in which all agents behave as `prediction` says. Step, copy and

@@ -178,6 +178,13 @@ template <class View>
   return v >= standing_speed && has_entered(other.at + 0.5 * (v + end) * dt, end, other.place);
 }
 
+/// Whether a vehicle enters before the own one, where both may enter in this step: it is nearer to its place or, at
+/// equal distance, its id is smaller (`is_smaller`: the own one's is).
+[[nodiscard]] inline bool enters_first(ConflictUser const& other, ConflictAsker const& own, bool is_smaller) {
+  double const nearer_by = own.place - own.s - (other.place - other.at);
+  return is_about_to_enter(other, own.dt) && (std::abs(nearer_by) > 1e-6 ? nearer_by > 0.0 : !is_smaller);
+}
+
 /// Whether the own vehicle goes before `other`, where both can still stop before their sections, `own_way` and `way`
 /// [m] before the zone. The first rule that applies decides:
 /// - A vehicle before a red light waits.
@@ -206,10 +213,7 @@ template <class View>
   bool const stands = user.speed < standing_speed, own_stands = own.speed < standing_speed;
   bool const is_smaller = view.id() < user.agent, is_patient = own.waited < own.patience;
   bool const in_order = is_by_arrival(view, conflict);
-  if (in_order && is_about_to_enter(other, own.dt)) {
-    double const nearer_by = other.place - other.at - (own.place - own.s);
-    if (std::abs(nearer_by) > 1e-6 ? nearer_by < 0.0 : !is_smaller) return false;
-  }
+  if (in_order && enters_first(other, own, is_smaller)) return false;
   bool const by_arrival = in_order && !is_patient;
   double const to_line = zone.other_line - other.at - user.front;
   // Without that order, all count as having come together.

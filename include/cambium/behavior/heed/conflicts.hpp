@@ -378,7 +378,7 @@ struct Conflicts {
       if (gap > 0.0 || splits) return Claim::free;
     }
     if (own_is_in) return Claim::free;
-    auto const section = view.section(user, conflict, large, own.may_meet_large);
+    auto const section = view.section(user, conflict, large, own.is_large, own.may_meet_large);
     if (section) other.place = section->place_to_wait(user.front, detail::lets_go(view, conflict.other_light));
     bool const has_entered = section ? detail::has_entered(at, user.speed, place) : is_in || !can_stop(user.speed, way);
     auto const key = detail::section_key(user.agent, section ? section->number : 0, own.section);

@@ -208,20 +208,24 @@ struct LaneCorridor {
   /// The speed limit at `s`; infinite where there is none. [m/s], O(log steps).
   [[nodiscard]] double speed_limit_at(double s) const { return map::speed_limit_at(speed_limits, s); }
 
-  /// The section of this corridor's traffic that holds `conflict` of another corridor, as positions on the path of the
-  /// conflict's other lane, negative before it; nothing where this corridor does not pass it. O(pieces + conflicts).
-  [[nodiscard]] std::optional<ConflictSection> section_of(Conflict const& conflict, bool is_large,
-                                                          bool others_large) const {
+  /// The section of this corridor's traffic that holds `conflict` of another corridor, for vehicles of the size
+  /// `is_large` before one of that corridor of the size `other_large`; `any_large`: see `Conflict::section`. Its
+  /// positions are on the path of the conflict's other lane, negative before it. Nothing where this corridor does not
+  /// pass it, or where nobody waits. O(pieces + conflicts).
+  [[nodiscard]] std::optional<ConflictSection> section_of(Conflict const& conflict, bool is_large, bool other_large,
+                                                          bool any_large) const {
     std::optional<ConflictSection> found;
     double least = std::numeric_limits<double>::infinity();
     for (auto const& piece : pieces) {
       if (piece.lane != conflict.other) continue;
       for (auto const& own : conflicts) {
         if (own.lane_end != piece.end || own.other != conflict.lane) continue;
-        double const apart = std::abs(own.hull().begin + piece.lane_offset - conflict.hull().other_begin);
-        if (apart >= least) continue;
+        auto const& section = own.section[is_large][any_large];
+        double const apart = std::abs(own.zones[is_large][other_large].begin + piece.lane_offset -
+                                      conflict.zones[other_large][is_large].other_begin);
+        if (section.number == ConflictSection::none || !(apart < least)) continue;
         least = apart;
-        found = own.section[is_large][others_large];
+        found = section;
         found->hold += piece.lane_offset;
         found->line += piece.lane_offset;
         found->refuge += piece.lane_offset;
