@@ -68,6 +68,7 @@
 #include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/linear_stability.hpp"
 #include "cambium/behavior/law/passing.hpp"
+#include "cambium/behavior/law/slowing.hpp"
 #include "cambium/behavior/law/stepping_out.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/open_loop/external_input.hpp"

@@ -149,8 +149,7 @@ struct Driver {
     double const speed = std::max(0.0, view.state().speed);
     Limits<Law> limits(law, speed, heeds.desired_speed(law, view, speed), heeds.merging(view, lateral.counted()));
     limits.gives_way = heeds_conflicts;
-    limits.last_acceleration = view.last_acceleration();
-    limits.jerk = jerk;
+    limits.jerk_bound = {jerk, view.last_acceleration()};
     auto const seen = lateral.look(view, memory.lateral, limits, dt);
     heeds.heed(view, memory.heeds, limits, dt);
     return lateral.drive(view, memory.lateral, seen, limits, dt);

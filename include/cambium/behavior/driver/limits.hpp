@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/law/follow_motion.hpp"
 #include "cambium/behavior/view.hpp"
@@ -124,6 +125,12 @@ class Limits {
     bound_ = nearer(bound_, motion.distance <= 0.0 ? LongitudinalMotion<double>{0.0, 0.0} : motion);
   }
 
+  /// Lets the vehicle stop within `distance` [m], by braking with `deceleration` [m/s^2] if that suffices, see
+  /// `motion_before_stop`.
+  void stop_within(double distance, double deceleration, double dt) {
+    bound(motion_before_stop(response_.speed(), distance, deceleration, -law_->lowest_acceleration, dt, jerk_bound));
+  }
+
   [[nodiscard]] Constraint const& constraint() const { return constraint_; }
   /// The law's response to the constraint [m/s^2].
   [[nodiscard]] double acceleration() {
@@ -133,14 +140,19 @@ class Limits {
   /// The law's motion over `dt` [s], without the bound.
   [[nodiscard]] LongitudinalMotion<double> motion(double dt) const { return response_.motion(constraint_, dt); }
   /// `motion` over `dt` [s], or the bound if that is shorter, as smoothly as the driver can: its acceleration changes
-  /// by no more than `jerk`. Where more than the comfortable deceleration is wanted it brakes the faster, as one who
-  /// has to hurry does.
+  /// by no more than the jerk permits. Where more than the comfortable deceleration is wanted it hits the brakes the
+  /// faster, and where nearly all is wanted that the driver can brake, at once.
   [[nodiscard]] LongitudinalMotion<double> within(LongitudinalMotion<double> const& motion, double dt) const {
-    constexpr double urgency = 4.0;  // [1/s] more jerk for what is wanted beyond the comfortable deceleration
+    constexpr double emergency = 0.9;  // share of the hardest braking
     auto const wanted = nearer(motion, bound_);
-    double const v = response_.speed(), a = (wanted.speed - v) / dt;
-    double const beyond = std::max(0.0, -law_->comfortable_deceleration - a);
-    double const low = last_acceleration - (jerk + urgency * beyond) * dt, high = last_acceleration + jerk * dt;
+    if (!jerk_bound.matters()) return wanted;
+    double const jerk = jerk_bound.jerk, last = jerk_bound.acceleration;
+    double const v = response_.speed(), a = (wanted.speed - v) / dt, comfortable = law_->comfortable_deceleration;
+    if (a <= -std::max(comfortable, -emergency * law_->lowest_acceleration)) return wanted;
+    // [1/s] more jerk for what is wanted beyond the comfortable deceleration: more if it would stop soon
+    double const urgency = std::max(4.0, -3.0 * a / std::max(v, 0.1));
+    auto const change = [&](double braked) { return (jerk + urgency * std::max(0.0, braked - comfortable)) * dt; };
+    double const low = last - change(-a), high = last + change(-last);
     if (!(a < low) && !(a > high)) return wanted;
     double const smooth = std::clamp(a, low, high), end = v + smooth * dt;
     if (end > 0.0) return {0.5 * (v + end) * dt, end};
@@ -151,8 +163,7 @@ class Limits {
   bool gives_way = false;             ///< it heeds conflicts
   double highest_speed = infinite;    ///< in the bends within the braking distance [m/s]
   bool is_at_light = false;           ///< it stands before a light that stops it
-  double last_acceleration = 0.0;     ///< of the driver, over the last step [m/s^2]
-  double jerk = infinite;             ///< highest change of its acceleration while it need not hurry [m/s^3]
+  JerkBound jerk_bound{};             ///< of the driver while it need not hurry
 
  private:
   [[nodiscard]] static LongitudinalMotion<double> nearer(LongitudinalMotion<double> const& motion,

@@ -24,12 +24,14 @@ struct Bends {
   void heed(View const& view, Limits& limits, double dt) const {
     auto const& corridor = view.corridor();
     auto const& law = limits.law();
-    double const speed = limits.response().speed(), fastest = speed + law.maximum_acceleration * dt;
+    double const speed = limits.response().speed(), gains = law.maximum_acceleration;
+    double const fastest = speed + gains * (dt + 0.5 * gains / limits.jerk_bound.planned());
     bool const matters = fastest * fastest * corridor.sharpest_bend > lateral_acceleration;
     if (!matters && corridor.conflicts.empty()) [[likely]]
       return;
-    auto const bends = detail::bends_ahead(corridor, view.place().s, speed, limits.highest_speed, lateral_acceleration,
-                                           law.comfortable_deceleration, -law.lowest_acceleration, dt);
+    auto const bends =
+        detail::bends_ahead(corridor, view.place().s, speed, limits.highest_speed, lateral_acceleration,
+                            law.comfortable_deceleration, -law.lowest_acceleration, dt, limits.jerk_bound);
     limits.highest_speed = bends.highest;
     limits.bound(bends.bound);
   }

@@ -120,6 +120,7 @@ struct Conflicts {
     own.maximum_acceleration = law.maximum_acceleration;
     own.comfortable = law.comfortable_deceleration;
     own.hardest = -law.lowest_acceleration;
+    own.jerk_bound = limits.jerk_bound;
     heed_conflicts(view, own, limits, dt);
     remember(memory, own, limits.is_at_light, dt);
     limits.bound(own.wait.bound);
@@ -143,6 +144,7 @@ struct Conflicts {
   struct Own : detail::ConflictAsker {
     double desired_speed{};                                                  ///< within the limits [m/s]
     double minimum_gap{}, maximum_acceleration{}, comfortable{}, hardest{};  ///< of its law [m, m/s^2]
+    JerkBound jerk_bound{};                                                  ///< of its acceleration
     double highest{};             ///< highest speed within `view_ahead`, unless `is_far` [m/s]
     Wait wait{};                  ///< by all claims
     detail::AgentsBefore now{};   ///< those that came before it, as from now on
@@ -263,7 +265,8 @@ struct Conflicts {
   [[nodiscard]] double longest_stop(Own const& own, double dt) const {
     double const end = own.speed + own.maximum_acceleration * dt;
     double const braking = std::min(waiting_deceleration(own), own.hardest);
-    return end * (dt + end / (2.0 * braking)) + stop_margin + at_line_within + air;
+    return end * dt + stopping_distance(end, own.maximum_acceleration, braking, own.jerk_bound) + stop_margin +
+           at_line_within + air;
   }
 
   /// Bounds the step's motion by the claim of vehicles of the size `others` on a conflict.
@@ -274,12 +277,14 @@ struct Conflicts {
     double const to_conflict = zone.begin - air - own.s;
     if (to_conflict + air < -detail::over_line) return;  // it is inside already
     double to_stop = to_conflict, braking = safe_deceleration;
+    JerkBound jerk_bound;  // to watch is not to expect to brake
     if (claim != Claim::watch) {
       braking = waiting_deceleration(own);
+      jerk_bound = own.jerk_bound;
       to_stop = own.has_entered ? distance_to_zone(view, own, to_conflict) : distance_to_place(own);
       if (!own.has_entered) own.stops_at = std::min(own.stops_at, own.place);
     }
-    auto const bound = motion_before_stop(own.speed, to_stop, braking, own.hardest, dt);
+    auto const bound = motion_before_stop(own.speed, to_stop, braking, own.hardest, dt, jerk_bound);
     if (bound.distance < own.wait.bound.distance) own.wait.bound = bound;
     own.wait.at_line = own.wait.at_line || to_stop < at_line_within;
   }

@@ -32,11 +32,11 @@ struct Pedestrians {
     constexpr double beyond = 20.0;  // [m]
     auto const& law = limits.law();
     double const speed = limits.response().speed(), comfortable = law.comfortable_deceleration;
-    double const look_ahead = speed * (dt + speed / (2.0 * comfortable)) + beyond;
+    double const fastest = speed + law.maximum_acceleration * dt;
+    double const braking = stopping_distance(fastest, law.maximum_acceleration, comfortable, limits.jerk_bound);
+    double const look_ahead = fastest * dt + braking + beyond;
     double const way = detail::distance_before_crossing(view, view.place().s, speed, crossing_time, look_ahead);
-    if (std::isfinite(way))
-      limits.bound(
-          motion_before_stop(speed, std::max(0.0, way - stop_margin), comfortable, -law.lowest_acceleration, dt));
+    if (std::isfinite(way)) limits.stop_within(std::max(0.0, way - stop_margin), comfortable, dt);
   }
 };
 

@@ -45,12 +45,13 @@ struct Signals {
     if (view.corridor().signals.empty()) return;
     auto const& law = limits.law();
     double const speed = limits.response().speed();
-    double const comfortable = law.comfortable_deceleration, hardest = -law.lowest_acceleration;
-    double const look_ahead = std::max(least, speed * (dt + speed / (2.0 * comfortable)) + beyond);
+    double const comfortable = law.comfortable_deceleration, fastest = speed + law.maximum_acceleration * dt;
+    double const braking = stopping_distance(fastest, law.maximum_acceleration, comfortable, limits.jerk_bound);
+    double const look_ahead = std::max(least, fastest * dt + braking + beyond);
     auto const stop = detail::stop_at_signals(view, view.place().s + view.shape().front, speed, look_ahead, stop_margin,
                                               safe_deceleration, late_at_red, memory.stopped_at);
     limits.is_at_light = stop.is_light && speed < standing_speed;
-    if (std::isfinite(stop.distance)) limits.bound(motion_before_stop(speed, stop.distance, comfortable, hardest, dt));
+    if (std::isfinite(stop.distance)) limits.stop_within(stop.distance, comfortable, dt);
   }
 };
 
