@@ -84,10 +84,14 @@ struct Twin {
     if (driver.lateral.rule.keep_right) {
       auto const inner = next(own.lane - 1, true);
       double const gap = inner ? inner->x - inner->rear - own.x - own.front : nobody;
-      if (passes(inner) && gap > 0.0)  // nobody brakes hard for it
-        now = std::min(now,
-                       idm(driver.law, driver.law.desired_speed, own.speed,
-                           std::max(gap, driver.law.minimum_gap + own.speed * driver.law.time_headway), inner->speed));
+      if (inner && inner->speed > driver.lateral.rule.critical_speed && gap > 0.0) {
+        // Nobody brakes hard for it: behind a slower one as at the desired headway, else as in steady following.
+        auto const& p = driver.law;
+        double const share = std::pow(own.speed / p.desired_speed, 4), steady = std::max(0.0, 1.0 - share);
+        double const weight = std::clamp((own.speed - inner->speed) / 2.0, 0.0, 1.0);
+        double const least = (p.minimum_gap + own.speed * p.time_headway) / std::sqrt(steady + weight * (1.0 - steady));
+        now = std::min(now, idm(p, p.desired_speed, own.speed, std::max(gap, least), inner->speed));
+      }
       if (left && passes(new_leader)) now = std::min(now, then);
       if (!left && passes(leader)) then = std::min(now, then);
       (left ? of_old : of_new) = 0.0;  // eq. 6, 7

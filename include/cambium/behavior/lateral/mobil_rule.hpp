@@ -135,14 +135,23 @@ struct MobilRule {
     return target;
   }
 
-  /// Follows a slower vehicle in another lane, but as if the gap were at least the desired headway, because nobody
-  /// brakes hard for it.
+  /// Follows a vehicle in another lane, but as if the gap were at least the desired headway, because nobody brakes hard
+  /// for it; behind one that is not slower, at least that of steady following. So the driver comes to the other's speed
+  /// and keeps it: who followed slower ones alone would brake and accelerate by turns.
   template <class Choice>
   void adapt_to(Choice const& now, std::optional<RoadUser> const& front) const {
+    constexpr double slower = 2.0;  // [m/s] from which the desired headway counts
+    if (!front || !(front->gap > 0.0)) return;
     auto const& law = now.limits.law();
-    if (front && front->gap > 0.0 && front->speed < now.limits.response().speed())
-      now.limits.heed(
-          {std::max(front->gap, law.minimum_gap + now.limits.response().speed() * law.time_headway), front->speed});
+    auto const& response = now.limits.response();
+    double const speed = response.speed(), headway = law.minimum_gap + speed * law.time_headway;
+    double const free = response(Constraint{}), behind = response(Constraint{headway, speed});
+    // In most laws the inverse square of the gap counts; in steady following it takes away all of `free`.
+    double const steady = free > 0.0 ? free / (free - std::min(behind, 0.0)) : 0.0;
+    double const share = std::clamp((speed - front->speed) / slower, 0.0, 1.0);
+    double const inverse_square = steady + share * (1.0 - steady);
+    if (inverse_square > 0.0)
+      now.limits.heed({std::max(front->gap, headway / std::sqrt(inverse_square)), front->speed});
   }
 
   /// Acceleration of a follower behind this vehicle, and behind `front` once this vehicle has left.
