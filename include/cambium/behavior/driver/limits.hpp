@@ -139,22 +139,16 @@ class Limits {
   }
   /// The law's motion over `dt` [s], without the bound.
   [[nodiscard]] LongitudinalMotion<double> motion(double dt) const { return response_.motion(constraint_, dt); }
-  /// `motion` over `dt` [s], or the bound if that is shorter, as smoothly as the driver can: its acceleration changes
-  /// by no more than the jerk permits. Where more than the comfortable deceleration is wanted it hits the brakes the
-  /// faster, and where nearly all is wanted that the driver can brake, at once.
+  /// `motion` over `dt` [s], or the bound if that is shorter, as smoothly as the driver can, see
+  /// `bounded_acceleration`.
   [[nodiscard]] LongitudinalMotion<double> within(LongitudinalMotion<double> const& motion, double dt) const {
-    constexpr double emergency = 0.9;  // share of the hardest braking
     auto const wanted = nearer(motion, bound_);
     if (!jerk_bound.matters()) return wanted;
-    double const jerk = jerk_bound.jerk, last = jerk_bound.acceleration;
-    double const v = response_.speed(), a = (wanted.speed - v) / dt, comfortable = law_->comfortable_deceleration;
-    if (a <= -std::max(comfortable, -emergency * law_->lowest_acceleration)) return wanted;
-    // [1/s] more jerk for what is wanted beyond the comfortable deceleration: more if it would stop soon
-    double const urgency = std::max(4.0, -3.0 * a / std::max(v, 0.1));
-    auto const change = [&](double braked) { return (jerk + urgency * std::max(0.0, braked - comfortable)) * dt; };
-    double const low = last - change(-a), high = last + change(-last);
-    if (!(a < low) && !(a > high)) return wanted;
-    double const smooth = std::clamp(a, low, high), end = v + smooth * dt;
+    double const v = response_.speed(), a = (wanted.speed - v) / dt;
+    double const smooth =
+        bounded_acceleration(a, v, law_->comfortable_deceleration, law_->lowest_acceleration, jerk_bound, dt);
+    if (!(smooth < a) && !(smooth > a)) return wanted;
+    double const end = v + smooth * dt;
     if (end > 0.0) return {0.5 * (v + end) * dt, end};
     return {smooth < 0.0 ? v * v / (-2.0 * smooth) : 0.0, 0.0};
   }

@@ -9,10 +9,10 @@ namespace cambium {
 /// How fast a driver's acceleration may change, and what it was over the last step. The default bounds nothing.
 struct JerkBound {
   double jerk = std::numeric_limits<double>::infinity();  ///< highest change of the acceleration [m/s^3]
-  double acceleration = 0.0;                              ///< over the last step [m/s^2]
+  double acceleration = 0.0;                              ///< over the last step [m/s^2]; NaN: bounds nothing
 
   /// Whether it makes a difference.
-  [[nodiscard]] bool matters() const { return jerk < 1e3; }
+  [[nodiscard]] bool matters() const { return jerk < 1e3 && !std::isnan(acceleration); }
   /// What drivers plan with [m/s^3]: the rest is reserve.
   [[nodiscard]] double planned() const { return 0.8 * jerk; }
 };
@@ -52,6 +52,22 @@ struct SlowingDistance {
     by_acceleration = even / hardest - 0.5 * target / jerk - square / (8.0 * jerk * jerk);
   }
   return {distance, time + slower / hardest, by_acceleration};
+}
+
+/// The acceleration closest to `wanted` [m/s^2] that the jerk permits in a step of `dt` [s] at `speed` [m/s]. Where
+/// more than the `comfortable` deceleration is wanted, or was, it changes the faster, as that of one who has to hurry
+/// does; where nearly all is wanted of the `lowest` acceleration, at once.
+[[nodiscard]] inline double bounded_acceleration(double wanted, double speed, double comfortable, double lowest,
+                                                 JerkBound const& bound, double dt) {
+  constexpr double emergency = 0.9;  // share of the lowest acceleration
+  if (!bound.matters() || wanted <= -std::max(comfortable, -emergency * lowest)) return wanted;
+  // [1/s] more jerk for what is beyond the comfortable deceleration: more if the vehicle would stop soon
+  double const urgency = std::max(4.0, -3.0 * wanted / std::max(speed, 0.1));
+  auto const change = [&](double braking) {
+    return (bound.jerk + urgency * std::max(0.0, braking - comfortable)) * dt;
+  };
+  double const low = bound.acceleration - change(-wanted), high = bound.acceleration + change(-bound.acceleration);
+  return wanted < low ? low : wanted > high ? high : wanted;
 }
 
 namespace detail {

@@ -10,6 +10,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/course.hpp"
 #include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/law/slowing.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/wrap/human_view.hpp"
 #include "cambium/core/distributions.hpp"
@@ -139,8 +140,8 @@ struct HumanDriver {
     if (is_new || memory.age > interval(dt) - 0.5 * dt) {
       if (anticipates) estimate.reach = reaction_time;
       estimate.acceleration = is_new ? 0.0 : (speed - static_cast<double>(memory.speed)) / dt;
-      decide(memory,
-             memory.looks_away ? static_cast<double>(memory.decided[0]) : decision(view, before, estimate, alone, dt),
+      double const last = memory.decided[0];
+      decide(memory, memory.looks_away ? last : smoothly(decision(view, before, estimate, alone, dt), speed, last, dt),
              is_new);
     }
     memory.speed = static_cast<float>(speed);
@@ -199,9 +200,24 @@ struct HumanDriver {
   template <class View>
   [[nodiscard]] double decision(View const& view, MemoryOf<Nominal> const& memory, HumanEstimate estimate, double alone,
                                 double dt) const {
+    estimate.decides = true;
     double const with_others = planned(view, memory, estimate, dt);
     estimate.alone = true;
     return with_others < planned(view, memory, estimate, dt) ? with_others : std::max(0.0, alone);
+  }
+
+  /// What the nominal driver's bound on jerk, if it has one, leaves of a decision to brake [m/s^2] after `last`.
+  [[nodiscard]] double smoothly(double wanted, [[maybe_unused]] double speed, [[maybe_unused]] double last,
+                                [[maybe_unused]] double dt) const {
+    if constexpr (requires {
+                    nominal.law.comfortable_deceleration;
+                    nominal.jerk;
+                  })
+      return std::max(wanted,
+                      bounded_acceleration(wanted, speed, nominal.law.comfortable_deceleration,
+                                           nominal.law.lowest_acceleration, {nominal.jerk, last}, interval(dt)));
+    else
+      return wanted;
   }
 
   static void decide(Memory& memory, double acceleration, bool is_first) {

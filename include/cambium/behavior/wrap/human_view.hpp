@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -15,6 +16,7 @@ struct HumanEstimate {
   double reach = 0.0;         ///< the estimate is for this time ahead [s]
   double acceleration = 0.0;  ///< own, assumed until then [m/s^2]
   bool alone = false;         ///< sees no road users
+  bool decides = false;       ///< for later: the present acceleration bounds nothing
 };
 
 /// A view as an imperfect driver has it: like `View`, but lengthwise distances and speeds of road users in lanes are
@@ -40,6 +42,9 @@ class HumanView : public View {
   }
 
   [[nodiscard]] State const& state() const { return state_; }
+  [[nodiscard]] double last_acceleration() const {
+    return estimate_.decides ? std::numeric_limits<double>::quiet_NaN() : View::last_acceleration();
+  }
   using View::shape;
   [[nodiscard]] decltype(auto) state(RoadUser const& agent) const { return View::state(agent); }
   [[nodiscard]] map::LanePlace const& place() const { return place_; }
