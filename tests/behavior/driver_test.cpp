@@ -176,8 +176,8 @@ TEST_CASE("the acceleration changes no faster than the jerk permits, but faster 
   CHECK(acceleration(0.6) == doctest::Approx(0.6));
   CHECK(acceleration(1.5) == doctest::Approx(0.7));
   CHECK(acceleration(-1.5) == doctest::Approx(0.3));
-  CHECK(acceleration(-3.5) == doctest::Approx(-0.3));  // 1.5 m/s^2 beyond comfort: 6 m/s^3 more
-  CHECK(acceleration(-4.8) == doctest::Approx(-4.8));  // an emergency
+  CHECK(acceleration(-3.5) == doctest::Approx(-0.075));  // 1.5 m/s^2 beyond comfort: 3.75 m/s^3 more
+  CHECK(acceleration(-4.8) == doctest::Approx(-4.8));    // an emergency
   Limits<Idm> stops(law, 0.05, 15.0);
   stops.jerk_bound = {.jerk = 2.0, .acceleration = -1.0};
   auto const last = stops.within({0.0, 0.0}, dt);

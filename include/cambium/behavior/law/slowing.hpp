@@ -62,7 +62,7 @@ struct SlowingDistance {
   constexpr double emergency = 0.9;  // share of the lowest acceleration
   if (!bound.matters() || wanted <= -std::max(comfortable, -emergency * lowest)) return wanted;
   // [1/s] more jerk for what is beyond the comfortable deceleration: more if the vehicle would stop soon
-  double const urgency = std::max(4.0, -3.0 * wanted / std::max(speed, 0.1));
+  double const urgency = std::max(2.5, -3.0 * wanted / std::max(speed, 0.1));
   auto const change = [&](double braking) {
     return (bound.jerk + urgency * std::max(0.0, braking - comfortable)) * dt;
   };
