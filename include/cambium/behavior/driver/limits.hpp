@@ -140,10 +140,11 @@ class Limits {
   /// The law's motion over `dt` [s], without the bound.
   [[nodiscard]] LongitudinalMotion<double> motion(double dt) const { return response_.motion(constraint_, dt); }
   /// `motion` over `dt` [s], or the bound if that is shorter, as smoothly as the driver can, see
-  /// `bounded_acceleration`.
+  /// `bounded_acceleration`; without that where a constraint comes so near that braking evenly takes half of what the
+  /// driver can brake.
   [[nodiscard]] LongitudinalMotion<double> within(LongitudinalMotion<double> const& motion, double dt) const {
     auto const wanted = nearer(motion, bound_);
-    if (!jerk_bound.matters()) return wanted;
+    if (!jerk_bound.matters() || is_urgent()) return wanted;
     double const v = response_.speed(), a = (wanted.speed - v) / dt;
     double const smooth =
         bounded_acceleration(a, v, law_->comfortable_deceleration, law_->lowest_acceleration, jerk_bound, dt);
@@ -160,6 +161,10 @@ class Limits {
   JerkBound jerk_bound{};             ///< of the driver while it need not hurry
 
  private:
+  [[nodiscard]] bool is_urgent() const {
+    double const closing = response_.speed() - constraint_.speed;
+    return closing > 0.0 && closing * closing > -law_->lowest_acceleration * constraint_.gap;
+  }
   [[nodiscard]] static LongitudinalMotion<double> nearer(LongitudinalMotion<double> const& motion,
                                                          LongitudinalMotion<double> const& other) {
     return motion.distance <= other.distance || std::isnan(motion.distance) ? motion : other;  // NaN is not lost
