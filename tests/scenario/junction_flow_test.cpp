@@ -1,7 +1,10 @@
-// Junctions under inflow that does not end: how many vehicles pass, and how long anybody stands.
+// Junctions under inflow that does not end: how many vehicles pass, and how long anybody stands; and starts of many
+// cars at once.
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
@@ -13,7 +16,10 @@
 #include "../support/scale.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/random.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "cambium/scenario/dataset/common_road.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
 
@@ -33,7 +39,7 @@ struct Flow {
 Flow saturate(JunctionSite const& site, double truck_share, bool lights, double dt, std::uint64_t seed,
               std::vector<UrbanDriver> const& drivers = {{}}) {
   JunctionSite::World world(site.map, {.seed = seed});
-  auto const plans = site.sample(seed, 0, {.lights = lights}).lights;
+  auto const plans = lights ? site.sample(seed, 0, {.lights = true}).lights : std::vector<map::LightPlan>{};
   for (std::size_t i = 0; i < plans.size(); ++i) world.set_light(site.map->lights()[i].id, plans[i]);
   TrafficInflow<JunctionSite::World> inflow(*site.map, find_sources(*site.map), seed);
   auto const next = [&](TrafficSource const& source, RandomStream& random) {
@@ -138,4 +144,69 @@ TEST_CASE("trucks and cars do not block each other in small junctions for good")
   check_flow(support::corpus_map("threeway_intersection.xodr"), {17.8, 14.8});
   check_flow(support::corpus_map("fabriksgatan.xodr"), {19.0, 18.0});
   check_flow(support::corpus_map("simple_3way_intersection_lht.xodr"), {19.5, 12.6});
+}
+
+TEST_CASE("roads that cross without a junction element keep flowing") {
+  for (auto const& [name, expected] : {std::pair{"opendrive/XCrossStopAllWay.xodr", 15.0},
+                                       {"cases/odr_all_way_stop_no_junction.xodr", 12.0},
+                                       {"cases/odr_crossing_no_signs_no_junction.xodr", 20.0}}) {
+    auto const file = corpus::find(name);
+    if (!file) return;
+    auto const flow = saturate({load_opendrive(file->string()).map, {}}, 0.3, false, 0.2, 7);
+    CAPTURE(name);
+    CHECK(flow.collisions == 0);
+    CHECK(flow.longest_stand < 120.0);
+    CHECK(flow.per_minute > expected);
+  }
+}
+
+namespace {
+
+/// Lets `count` cars start from standstill at random places outside of junctions, on random routes. Returns whether all
+/// get through, and nobody collides.
+bool all_get_through(std::shared_ptr<Map const> const& map, int count, std::uint64_t seed) {
+  JunctionSite::World world(map, {.seed = seed});
+  RandomStream random(seed, 0, 0);
+  for (int tries = 0; tries < 20 * count && static_cast<int>(world.size()) < count; ++tries) {
+    auto const from = static_cast<LaneId>(uniform_index(random, static_cast<std::uint32_t>(map->lanes().size())));
+    auto const& lane = map->lane(from);
+    if (!lane.drivable() || map->in_junction(from) || lane.length() < 8.0) continue;
+    auto const pose = lane.path.pose(5.0 + uniform01(random) * (lane.length() - 6.0));
+    if (std::ranges::any_of(world.frame().agents, [&](auto const& agent) {
+          return std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 12.0;
+        }))
+      continue;
+    world.add({.position = pose.position(),
+               .heading = pose.heading,
+               .behavior = UrbanDriver{.law = {.desired_speed = 8.0 + 7.0 * uniform01(random)}},
+               .route = random_route(*map, from, random)});
+  }
+  REQUIRE(static_cast<int>(world.size()) > count / 2);
+  while (world.time() < 300.0 && world.size() > 0) {
+    REQUIRE(world.step(0.2));
+    if (AnyCollision{}(world)) return false;
+    for (std::size_t i = world.size(); i-- > 0;) {
+      auto const& [agent, record] = std::pair(world.roster().agents[i], world.frame().agents[i]);
+      if (agent.road->corridors[record.lane.corridor].length() - record.lane.s < 8.0) world.remove(agent.id);
+    }
+  }
+  return world.size() == 0;
+}
+
+}  // namespace
+
+TEST_CASE("cars that start anywhere on short, tangled roads all get through") {
+  auto const tee = corpus::find("cases/cr_tight_tee_short.xml");
+  auto const tangle = support::corpus_map("libopendrive_test.xodr");
+  if (!tee || !tangle) return;
+  auto const map = load_common_road(tee->string()).map;
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    CAPTURE(seed);
+    CHECK(all_get_through(map, 3, seed));
+  }
+  CHECK(all_get_through(tangle, 40, 4));
+  for (std::uint64_t seed = 10; seed < 9 + support::runs(10); ++seed) {
+    CAPTURE(seed);
+    CHECK(all_get_through(tangle, 40, seed));
+  }
 }
