@@ -382,8 +382,8 @@ EXPERIMENTS = {
         yellow,
         [
             "reaction of the first to stop at yellow, median",
-            "its deceleration, median",
-            "its deceleration, 85 %",
+            "deceleration of the first to stop at yellow, median",
+            "deceleration of the first to stop at yellow, 85 %",
             "time to the line at yellow where 10 % stop",
             "time to the line at yellow where 90 % stop",
         ],
@@ -399,7 +399,7 @@ EXPERIMENTS = {
         [
             text.format(name)
             for texts in (
-                ("two-way stop, {}: capacity in shares of people's", "the same where it is farthest off"),
+                ("two-way stop, {}: capacity in shares of people's", "two-way stop, {}: the share farthest off"),
                 ("critical gap, {}", "follow-up headway, {}"),
             )
             for name in MOVEMENTS
@@ -424,8 +424,8 @@ EXPERIMENTS = {
         junctions_with_trucks,
         [
             "two-way stop with 15 % lorries, capacity in shares",
-            "all-way stop with 15 % lorries, the same",
-            "roundabout with 15 % lorries, the same",
+            "all-way stop with 15 % lorries, capacity in shares",
+            "roundabout with 15 % lorries, capacity in shares",
         ],
     ),
     "patience": (patience, ["fall of the critical gap in 60 s of waiting"]),

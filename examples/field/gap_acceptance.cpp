@@ -76,7 +76,7 @@ std::vector<Row> two_way_stop(std::uint64_t seed) {
     rows.push_back({"two-way stop, " + name + ": capacity in shares of people's", 0.85, 1.15, "-", two_way_source,
                     moments(shares).mean});
     rows.push_back(
-        {"the same where it is farthest off", 0.85, 1.15, "-", two_way_source,
+        {"two-way stop, " + name + ": the share farthest off", 0.85, 1.15, "-", two_way_source,
          *std::max_element(shares.begin(), shares.end(), [&](double a, double b) { return off(a) < off(b); })});
     gaps.push_back({"critical gap, " + name, movement.critical - 0.5, movement.critical + 0.5, "s",
                     "HCM 7th ed., exh. 20-17", critical_gap(all)});
@@ -161,9 +161,9 @@ std::vector<Row> junctions_with_trucks(std::uint64_t seed) {
   double const equivalents = 1.0 + share;  // of a vehicle, at two cars for a lorry
   return {{"two-way stop with 15 % lorries, capacity in shares", 0.85, 1.15, "-", "HCM 7th ed., eq. 20-30 and 20-31",
            moments(stops).mean},
-          {"all-way stop with 15 % lorries, the same", 0.85, 1.15, "-", "HCM 7th ed., exh. 21-15",
+          {"all-way stop with 15 % lorries, capacity in shares", 0.85, 1.15, "-", "HCM 7th ed., exh. 21-15",
            (9.6 + 1.7 * share) / moments(headways).mean},
-          {"roundabout with 15 % lorries, the same", 0.85, 1.15, "-", "HCM 7th ed., eq. 22-1, exh. 22-11",
+          {"roundabout with 15 % lorries, capacity in shares", 0.85, 1.15, "-", "HCM 7th ed., eq. 22-1, exh. 22-11",
            entering * equivalents / roundabout_capacity(circulating * equivalents)}};
 }
 

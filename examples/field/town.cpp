@@ -146,11 +146,12 @@ std::vector<Row> yellow(std::uint64_t seed) {
   }
   Logistic const stops(ways, stopped);
   constexpr char const *gates = "Gates et al. 2007", *zone = "field test, 60 drivers";
-  return {{"reaction of the first to stop at yellow, median", 0.8, 1.2, "s", gates, quantile(reactions, 0.5)},
-          {"its deceleration, median", 2.6, 3.4, "m/s^2", gates, quantile(decelerations, 0.5)},
-          {"its deceleration, 85 %", 2.6, 4.2, "m/s^2", gates, quantile(decelerations, 0.85)},
-          {"time to the line at yellow where 10 % stop", 1.5, 5.0, "s", zone, stops.at(0.1)},
-          {"time to the line at yellow where 90 % stop", 1.5, 5.0, "s", zone, stops.at(0.9)}};
+  return {
+      {"reaction of the first to stop at yellow, median", 0.8, 1.2, "s", gates, quantile(reactions, 0.5)},
+      {"deceleration of the first to stop at yellow, median", 2.6, 3.4, "m/s^2", gates, quantile(decelerations, 0.5)},
+      {"deceleration of the first to stop at yellow, 85 %", 2.6, 4.2, "m/s^2", gates, quantile(decelerations, 0.85)},
+      {"time to the line at yellow where 10 % stop", 1.5, 5.0, "s", zone, stops.at(0.1)},
+      {"time to the line at yellow where 90 % stop", 1.5, 5.0, "s", zone, stops.at(0.9)}};
 }
 
 std::vector<Row> stop_braking(std::uint64_t seed) {
