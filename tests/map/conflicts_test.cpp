@@ -192,11 +192,11 @@ TEST_CASE("where one waits for a section one is in nobody's way") {
         for (std::size_t others : {0u, 1u}) {
           double const front = own ? geometry::truck().front : geometry::car().front;
           auto const zone = [=](map::Conflict const& c) {
-            auto zone = c.zones[own][0];
-            if (others == 0 || c.zones[own][1].empty()) return zone;
-            zone.begin = std::min(zone.begin, c.zones[own][1].begin);
-            zone.end = std::max(zone.end, c.zones[own][1].end);
-            return zone;
+            auto whole = c.zones[own][0];
+            if (others == 0 || c.zones[own][1].empty()) return whole;
+            whole.begin = std::min(whole.begin, c.zones[own][1].begin);
+            whole.end = std::max(whole.end, c.zones[own][1].end);
+            return whole;
           };
           for (auto const& conflict : conflicts) {
             auto const& section = conflict.section[own][others];
