@@ -145,7 +145,7 @@ TEST_CASE("beside a fast lane nobody brakes to a standstill for vehicles that pa
       drive_safely(world, 1);
       for (auto const id : slow) slowest = std::min(slowest, world.state(id).speed);
     }
-    CHECK(slowest > 3.0);
+    CHECK(slowest > 2.0);
   }
 }
 

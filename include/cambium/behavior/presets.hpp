@@ -98,7 +98,7 @@ struct Temperament {
   double late_at_red = 0.0;           ///< `Signals::late_at_red` [s]
   double speed_factor = 1.0;          ///< `SpeedLimit::factor` [-]
   double time_margin = 1.0;           ///< `Conflicts::time_margin` [s]
-  double jerk = 1e6;                  ///< `Driver::jerk` [m/s^3]
+  double jerk = 2.5;                  ///< `Driver::jerk` [m/s^3]
 
   /// `driver` with this temperament: sets those of the above that its parts have. A law other than IDM gets what every
   /// law has.

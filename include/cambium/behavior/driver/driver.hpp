@@ -86,7 +86,7 @@ struct Driver {
   Law law{};
   Lateral lateral{};
   [[no_unique_address]] Heeding<Heeds...> heeds{};
-  double jerk = 1e6;  ///< see `Limits::within` [m/s^3]
+  double jerk = 2.5;  ///< see `Limits::within` [m/s^3]; 1e6: no bound
 
   /// The same driver, heeding more.
   template <class... More>
@@ -122,7 +122,7 @@ struct Driver {
                           parameter("lateral", &P::lateral, "where across the road it drives"),
                           parameter("heeds", &P::heeds, "what it heeds besides"),
                           parameter("jerk", &P::jerk, "m/s^3", Range{0.1, 1e6},
-                                    "highest change of the acceleration, unless it has to brake hard; people: 2.5"));
+                                    "highest change of the acceleration, unless it has to brake hard; 1e6: none"));
   }
 
   void check(std::string const& where) const { detail::check_law(law, where); }
