@@ -141,7 +141,7 @@ TEST_CASE("who has left its place to wait is let through, before the edge of the
 }
 
 TEST_CASE("trucks and cars do not block each other in small junctions for good") {
-  check_flow(support::corpus_map("threeway_intersection.xodr"), {17.8, 14.0});
+  check_flow(support::corpus_map("threeway_intersection.xodr"), {15.8, 14.0});
   check_flow(support::corpus_map("fabriksgatan.xodr"), {19.0, 18.0});
   check_flow(support::corpus_map("simple_3way_intersection_lht.xodr"), {19.5, 12.6});
 }

@@ -29,10 +29,9 @@ namespace cambium {
 /// that its turn signal permits) and derives a claim: the conflict is free, must be watched, must be yielded, or is
 /// blocked. The strongest claim bounds the step so that the vehicle can stop at its place or before the zone.
 ///
-/// - Outside, a driver waits for all who have entered a section of theirs that conflicts with its own, unless they
-/// leave
-///   the zone in time, and for those who go first (`detail::goes_first`) and would be in the zone less than
-///   `time_margin` before or after it. It enters when it waits for nobody and there is room behind the section.
+/// - Outside, a driver waits for all who have entered a section that conflicts with its own, unless they leave the zone
+///   in time, and for those who go first (`detail::goes_first`) and would be in the zone less than `time_margin` before
+///   or after it. It enters when it waits for nobody and there is room behind the section.
 /// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
 ///   remembers who these are.
 ///
@@ -79,7 +78,7 @@ struct Conflicts {
         parameter("keep_clear", &P::keep_clear, "do not stop within the junction"),
         parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to a line where it waits"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
-                  "by which drivers judge who can still stop"));
+                  "by which it can stop before a conflict until that is free"));
   }
 
   struct Memory {
@@ -131,7 +130,8 @@ struct Conflicts {
 
   static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
   static constexpr double air = 0.3;             // [m] distance kept to a conflict
-  static constexpr double longest_wait = 40.0;   // [s] beyond its patience, until it drives up to the conflict
+  static constexpr double longest_wait =
+      40.0;  // [s] beyond its patience, until it enters without room; twice that: see `claim_in_time`
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   /// Where one waits.
@@ -444,7 +444,8 @@ struct Conflicts {
   }
 
   /// The claim of a vehicle that goes first, has not entered yet, and arrives at the zone after `way` [m]. Who has
-  /// waited long takes a gap up to a second shorter, and after `longest_wait` any before one that can stop with ease.
+  /// waited long takes a gap up to a second shorter, and after twice `longest_wait` any before one that can stop with
+  /// ease.
   [[nodiscard]] Claim claim_in_time(map::ConflictZone const& zone, Other const& other, double way, double own_way,
                                     Own const& own) const {
     auto const& [user, at, reach, behind_slow, place] = other;

@@ -385,7 +385,8 @@ struct ChangeLanes {
         return;
       limits.heed(detail::constraint_beside<typename Limits::Response>(view, next));
     });
-    if (auto const gap = keep.gap_to_wait_for(view, limits.merging, -limits.law().lowest_acceleration))
+    if (auto const gap =
+            keep.gap_to_wait_for(view, limits.merging, -limits.law().lowest_acceleration, limits.jerk_bound))
       limits.heed(*gap);
     return limits;
   }

@@ -123,20 +123,22 @@ struct KeepLane {
     view.each_ahead({.merging = limits.merging}, [&](RoadUser const& next) {
       limits.heed(detail::constraint_of<typename Limits::Response>(view, next));
     });
-    if (auto const gap = gap_to_wait_for(view, limits.merging, -limits.law().lowest_acceleration)) limits.heed(*gap);
+    if (auto const gap = gap_to_wait_for(view, limits.merging, -limits.law().lowest_acceleration, limits.jerk_bound))
+      limits.heed(*gap);
   }
 
   /// The merge before which a driver that gives way (`Merging::gives_way`) must wait, because the next vehicle behind,
   /// in a lane that merges with its own, would have to brake harder than `safe_deceleration` or come closer than
   /// `merging_headway`, if it keeps its speed until then. A driver that can stop only by harder braking, up to
-  /// `hardest` [m/s^2], does so only for one that would have to brake behind it as hard.
+  /// `hardest` [m/s^2], does so only for one that would have to brake behind it as hard. `bound`: of its acceleration.
   /// Gap acceptance as at junctions without signals (Highway Capacity Manual 2000, chapter 17); safety as in MOBIL
   /// (Kesting, Treiber, Helbing 2007). O(feeders), plus a search in each.
   template <class View>
-  [[nodiscard]] std::optional<Constraint> gap_to_wait_for(View const& view, Merging counted, double hardest) const {
+  [[nodiscard]] std::optional<Constraint> gap_to_wait_for(View const& view, Merging counted, double hardest,
+                                                          JerkBound const& bound = {}) const {
     if (counted != Merging::gives_way) [[likely]]
       return std::nullopt;
-    return gap_before_merge(view, hardest);
+    return gap_before_merge(view, hardest, bound);
   }
 
   /// Whether it may choose where in its lane it drives, and whom it passes there. O(1).
@@ -179,7 +181,8 @@ struct KeepLane {
   }
 
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] std::optional<Constraint> gap_before_merge(View const& view, double hardest) const {
+  CAMBIUM_NOINLINE [[nodiscard]] std::optional<Constraint> gap_before_merge(View const& view, double hardest,
+                                                                            JerkBound const& bound) const {
     using detail::pull_away;
     constexpr double room = 2.0;  // [m]
     double const s = view.place().s, front = s + view.shape().front, speed = std::max(0.0, view.state().speed);
@@ -187,7 +190,8 @@ struct KeepLane {
     for (auto const& feeder : view.corridor().feeders)
       if (feeder.is_still_to_merge() && feeder.free_until >= front) merge = std::min(merge, feeder.free_until);
     double const way = merge - front;
-    bool const is_late = !can_stop(speed, way, safe_deceleration);
+    bool const is_late = speed >= standing_speed &&
+                         stopping_distance(speed, bound.acceleration, safe_deceleration, bound) > std::max(0.0, way);
     if (way > speed * (1.0 + speed / (2.0 * pull_away)) + 10.0 || (is_late && !can_stop(speed, way, hardest)))
       return std::nullopt;
     auto const next = view.merging(merge, s);
@@ -196,9 +200,12 @@ struct KeepLane {
     // Too late to wait in comfort, it counts neither on its own acceleration nor on the other's braking, which may be
     // for somebody else.
     double const gains = is_late ? 0.0 : pull_away;
-    double const time = time_to_cover(way, speed, gains, highest);
+    // With a bounded jerk it gains speed later, as if it began so much slower.
+    double const rise = std::max(0.0, gains - bound.acceleration);
+    double const from = bound.matters() ? std::max(0.0, speed - rise * rise / (2.0 * bound.jerk)) : speed;
+    double const time = time_to_cover(way, from, gains, highest);
     double const then = is_late ? theirs + std::max(0.0, view.acceleration(*next)) * time : theirs;
-    double const slower = std::max(0.0, then - std::min(highest, speed + gains * time));
+    double const slower = std::max(0.0, then - std::min(highest, from + gains * time));
     double const gap = s - view.shape().rear - (next->s + next->front) + way - 0.5 * (theirs + then) * time;
     double const needed = is_late ? slower * slower / (2.0 * hardest)
                                   : merging_headway * theirs + slower * slower / (2.0 * safe_deceleration);
@@ -279,7 +286,8 @@ struct KeepLane {
       if (!leaves_room(view, view.place().corridor, other, found.offset, found.clearance))
         limits.heed(detail::constraint_of<Response>(view, other));
     });
-    if (auto const gap = gap_to_wait_for(view, limits.merging, -limits.law().lowest_acceleration)) limits.heed(*gap);
+    if (auto const gap = gap_to_wait_for(view, limits.merging, -limits.law().lowest_acceleration, limits.jerk_bound))
+      limits.heed(*gap);
   }
 
   template <class View>
