@@ -74,7 +74,7 @@ struct Conflicts {
         parameter(
             "patience", &P::patience, "s", Range{0, 600},
             "a driver that has stood for this time goes before those that stopped later where nobody has priority; "
-            "after up to 58 s more, by its id, before any other one that stands"),
+            "after up to 38 s more, by its id, before any other one that stands"),
         parameter("keep_clear", &P::keep_clear, "do not stop within the junction"),
         parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to a line where it waits"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
@@ -253,11 +253,10 @@ struct Conflicts {
     return leader.gap < infinite && leader.speed <= detail::starting_speed;
   }
 
-  /// How hard it brakes for a place where it waits [m/s^2]: less than `safe_deceleration`, by which drivers judge who
-  /// can no longer stop. Otherwise several that brake for their lines would seem to be beyond them, and meet in a ring
-  /// inside the junction.
-  [[nodiscard]] double waiting_deceleration(Own const& own) const {
-    return std::min(own.comfortable, 0.8 * safe_deceleration);
+  /// How hard it brakes for a place where it waits [m/s^2]: less than what drivers judge by, so that one who brakes for
+  /// its place does not seem to have entered.
+  [[nodiscard]] static double waiting_deceleration(Own const& own) {
+    return std::min(own.comfortable, 0.8 * detail::judged_deceleration);
   }
 
   /// Distance from the front end [m] beyond which a place to stop does not bound the step: a vehicle that accelerates
@@ -335,7 +334,7 @@ struct Conflicts {
         };
         Other const other{user, at, detail::extra_reach(view, large, user.front, user.rear),
                           own.waited >= own.patience && is_behind_slow()};
-        bool const is_next = own.waited == 0.0 ? own.notes_standing && first() && first()->agent == user.agent : true;
+        bool const is_next = own.notes_standing && first() && first()->agent == user.agent;
         claims[large] = std::max(claims[large], claim_of(view, conflict, large, other, own, limits, is_next));
       });
     return claims;
