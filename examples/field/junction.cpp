@@ -31,9 +31,9 @@ People town_people(double truck_share) {
   return {.cars = cb::presets::town_cars(), .trucks = cb::presets::town_trucks(), .truck_share = truck_share};
 }
 
-std::shared_ptr<cb::Map const> crossing(std::array<char const*, 4> const& signs) {
+std::shared_ptr<cb::Map const> crossing(std::array<char const*, 4> const& signs, double limit) {
   using namespace cb::map;
-  constexpr double distance = 10.0;  // [m] from the middle to where the arms end
+  constexpr double distance = 12.0;  // [m] from the middle to where the arms end
   constexpr auto end = opendrive::ContactPoint::end;
   MapBuilder builder("crossing");
   for (std::size_t i = 0; i < 4; ++i) {
@@ -42,7 +42,7 @@ std::shared_ptr<cb::Map const> crossing(std::array<char const*, 4> const& signs)
     RoadPlan arm{.id = std::to_string(i + 1),
                  .line = lay_to({distance * along.cos, distance * along.sin, angle + cb::geometry::pi}, {{length}}),
                  .type = "town",
-                 .speed_limit = town_limit};
+                 .speed_limit = limit};
     arm.sections = {{.left = equal_lanes(1), .right = equal_lanes(1)}};
     builder.add_road(std::move(arm));
     opendrive::Signal sign;
@@ -58,7 +58,7 @@ std::shared_ptr<cb::Map const> crossing(std::array<char const*, 4> const& signs)
     for (char to = '1'; to <= '4'; ++to)
       if (from != to)
         builder.add_turn("100", {std::string(1, from), end}, {std::string(1, to), end},
-                         {.id = {from, to}, .speed_limit = town_limit});
+                         {.id = {from, to}, .speed_limit = limit});
   return builder.build();
 }
 

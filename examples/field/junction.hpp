@@ -22,10 +22,11 @@ constexpr double town_limit = 50.0 / 3.6;  ///< [m/s]
 /// Signs of OpenDRIVE's catalogue.
 inline constexpr char const *priority = "306", *stop_sign = "206", *light = "1000001";
 
-/// Two streets that cross, with one lane each way and a limit of 50 km/h. Arms 1 (east) and 3 (west) are 200 m long, 2
-/// (north) and 4 (south) 100 m; `signs` stand at them in that order. Road "13" leads from arm 1 to arm 3, and so on.
+/// Two streets that cross, with one lane each way and a speed `limit` [m/s]. Arms 1 (east) and 3 (west) are 200 m long,
+/// 2 (north) and 4 (south) 100 m; `signs` stand at them in that order. Road "13" leads from arm 1 to arm 3, and so on.
 /// The light of arm 1 is "signal 1".
-[[nodiscard]] std::shared_ptr<cb::Map const> crossing(std::array<char const*, 4> const& signs);
+[[nodiscard]] std::shared_ptr<cb::Map const> crossing(std::array<char const*, 4> const& signs,
+                                                      double limit = town_limit);
 
 /// The roundabout of `maps`: one lane, 20 m radius, four arms; arm 1 is entered by road "103", arm 2 left by "202".
 [[nodiscard]] std::shared_ptr<cb::Map const> roundabout();

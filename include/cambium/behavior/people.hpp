@@ -10,19 +10,24 @@
 namespace cambium {
 
 /// How the drivers of one kind of vehicle differ from each other: each parameter with its distribution. The defaults
-/// are car drivers on motorways.
+/// are car drivers on motorways. "Fitted" are parameters that nobody observes as such: they were chosen so that traffic
+/// comes into the bands of the sources named, see the table in behavior/README.md.
 struct Population {
-  Distribution desired_speed = ClippedNormal{33.0, 6.8, 27.0, 55.0};
-  Distribution speed_factor = ClippedNormal{1.04, 0.1, 0.8, 1.4};
-  Distribution time_headway = ClippedNormal{0.97, 0.35, 0.5, 2.5};
-  Distribution minimum_gap = ClippedNormal{2.0, 0.5, 1.0, 4.0};
-  Distribution maximum_acceleration = ClippedNormal{1.2, 0.25, 0.7, 2.0};
-  Distribution comfortable_deceleration = ClippedNormal{2.0, 0.4, 1.2, 3.0};
-  Distribution politeness = Uniform{0.0, 0.1};
-  Distribution threshold = Uniform{0.2, 0.35};
-  Distribution change_duration = ClippedNormal{5.8, 1.4, 3.0, 9.0};
-  Distribution lateral_acceleration = ClippedNormal{2.7, 0.4, 1.8, 4.0};
-  Distribution time_margin = ClippedNormal{1.0, 0.25, 0.5, 2.0};
+  Distribution desired_speed = ClippedNormal{33.0, 6.8, 27.0, 55.0};          // Heidemann 1987; BASt 2010-14
+  Distribution speed_factor = ClippedNormal{1.04, 0.1, 0.8, 1.4};             // DfT 2019
+  Distribution time_headway = ClippedNormal{0.97, 0.35, 0.5, 2.5};            // fitted: Wasielewski 1979; HCM
+  Distribution minimum_gap = ClippedNormal{2.0, 0.5, 1.0, 4.0};               // Treiber, Kesting 2013; spread: own
+  Distribution maximum_acceleration = ClippedNormal{1.2, 0.25, 0.7, 2.0};     // Treiber, Kesting: MovSim's ACC cars
+  Distribution comfortable_deceleration = ClippedNormal{2.0, 0.4, 1.2, 3.0};  // the same
+  Distribution politeness = Uniform{0.0, 0.1};                                // fitted: Knoop et al. 2012
+  Distribution threshold = Uniform{0.2, 0.35};                                // fitted: Knoop et al. 2012
+  Distribution change_duration = ClippedNormal{5.8, 1.4, 3.0, 9.0};           // Toledo, Zohar 2007
+  Distribution lateral_acceleration = ClippedNormal{2.7, 0.4, 1.8, 4.0};      // own
+  Distribution time_margin = ClippedNormal{0.5, 0.15, 0.2, 1.0};              // fitted: HCM, exh. 20-17
+  Distribution stop_sign_margin = ClippedNormal{3.0, 0.5, 1.5, 4.5};          // fitted: HCM, exh. 20-17
+  Distribution reaction = ClippedNormal{0.8, 0.2, 0.4, 1.2};                  // Gates et al. 2007
+  Distribution rolling_speed = ClippedNormal{2.4, 0.4, 0.0, 3.4};             // fitted: HCM, exh. 20-18
+  Distribution signal_braking = ClippedNormal{3.6, 0.3, 3.0, 4.5};            // Gates et al. 2007
   double bias = 0.2;
   double others_headway = 0.8;
   double lowest_acceleration = -8.0;
@@ -45,6 +50,10 @@ struct Population {
         parameter("change_duration", &P::change_duration, "s", {}, "of a lane change"),
         parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", {}, "highest in bends"),
         parameter("time_margin", &P::time_margin, "s", {}, "between two vehicles at one place in a junction"),
+        parameter("stop_sign_margin", &P::stop_sign_margin, "s", {}, "more for those that come from a stop sign"),
+        parameter("reaction", &P::reaction, "s", {}, "to lights"),
+        parameter("rolling_speed", &P::rolling_speed, "m/s", {}, "that counts as a stop at stop signs"),
+        parameter("signal_braking", &P::signal_braking, "m/s^2", {}, "up to which they stop at yellow"),
         parameter("bias", &P::bias, "m/s^2", Range{-10, 10}, "in favour of the outer lane, see `MobilRule`"),
         parameter("others_headway", &P::others_headway, "s", Range{0, 20},
                   "time gap with which they expect others to put up after a lane change"),
@@ -66,9 +75,13 @@ struct Population {
     check_draws(change_duration, {0.5, 30}, "change_duration", "s", where);
     check_draws(lateral_acceleration, {0.1, 50}, "lateral_acceleration", "m/s^2", where);
     check_draws(time_margin, {0, 20}, "time_margin", "s", where);
+    check_draws(stop_sign_margin, {0, 20}, "stop_sign_margin", "s", where);
+    check_draws(reaction, {0, 10}, "reaction", "s", where);
+    check_draws(rolling_speed, {0, 10}, "rolling_speed", "m/s", where);
+    check_draws(signal_braking, {0.1, 20}, "signal_braking", "m/s^2", where);
   }
 
-  /// The next of these people. Takes ten draws.
+  /// The next of these people. Takes fourteen draws.
   [[nodiscard]] presets::Temperament draw(RandomStream& random) const {
     presets::Temperament one;
     auto same = random;  // one draw for both: fast is fast
@@ -87,6 +100,10 @@ struct Population {
     one.others_headway = others_headway;
     one.lateral_acceleration = lateral_acceleration(random);
     one.time_margin = time_margin(random);
+    one.stop_sign_margin = stop_sign_margin(random);
+    one.reaction = reaction(random);
+    one.rolling_speed = rolling_speed(random);
+    one.signal_braking = signal_braking(random);
     return one;
   }
 };
@@ -96,7 +113,7 @@ namespace presets {
 /// Drivers of cars on motorways.
 [[nodiscard]] inline Population motorway_cars() { return {}; }
 
-/// Drivers of lorries on motorways.
+/// Drivers of lorries on motorways: speeds up to the limiter; the others around MovSim's lorries, spread: own.
 [[nodiscard]] inline Population motorway_trucks() {
   Population p;
   p.desired_speed = ClippedNormal{24.2, 1.0, 22.0, 26.0};
@@ -107,20 +124,28 @@ namespace presets {
   p.maximum_acceleration = ClippedNormal{0.8, 0.15, 0.5, 1.2};
   p.comfortable_deceleration = ClippedNormal{1.6, 0.3, 1.0, 2.2};
   p.lateral_acceleration = ClippedNormal{2.0, 0.2, 1.5, 2.6};
+  p.signal_braking = ClippedNormal{3.0, 0.3, 2.4, 3.6};
   p.lowest_acceleration = -6.0;
   return p;
 }
 
-/// Drivers of cars in town.
+/// Drivers of cars in town: headways as Michael et al. 2000 saw; accelerations fitted to HCM's saturation flow and to
+/// Gates et al. 2007; speeds: DfT 2019.
 [[nodiscard]] inline Population town_cars() {
   Population p;
-  p.time_headway = ClippedNormal{1.3, 0.4, 0.5, 2.6};
+  p.time_headway = ClippedNormal{1.3, 0.6, 0.4, 3.0};
+  p.maximum_acceleration = ClippedNormal{2.3, 0.4, 1.3, 3.3};
+  p.comfortable_deceleration = ClippedNormal{2.6, 0.4, 1.4, 3.4};
   p.speed_factor = ClippedNormal{1.02, 0.12, 0.7, 1.4};
   return p;
 }
 
-/// Drivers of lorries and buses in town.
-[[nodiscard]] inline Population town_trucks() { return motorway_trucks(); }
+/// Drivers of lorries and buses in town: SUMO's acceleration of lorries, 1.3 m/s^2.
+[[nodiscard]] inline Population town_trucks() {
+  auto p = motorway_trucks();
+  p.maximum_acceleration = ClippedNormal{1.3, 0.2, 0.8, 1.8};
+  return p;
+}
 
 }  // namespace presets
 

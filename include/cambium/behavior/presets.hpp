@@ -99,6 +99,9 @@ struct Temperament {
   double speed_factor = 1.0;          ///< `SpeedLimit::factor` [-]
   double time_margin = 1.0;           ///< `Conflicts::time_margin` [s]
   double jerk = 2.5;                  ///< `Driver::jerk` [m/s^3]
+  double stop_sign_margin = 0.0;      ///< `Conflicts::stop_sign_margin` [s]
+  double reaction = 0.0;              ///< `Signals::reaction` [s]
+  double rolling_speed = 0.0;         ///< `Signals::rolling_speed` [m/s]
 
   /// `driver` with this temperament: sets those of the above that its parts have. A law other than IDM gets what every
   /// law has.
@@ -112,11 +115,14 @@ struct Temperament {
     if constexpr (Heeding<Heeds...>::template contains<Signals>) {
       driver.template heed<Signals>().safe_deceleration = signal_braking;
       driver.template heed<Signals>().late_at_red = late_at_red;
+      driver.template heed<Signals>().reaction = reaction;
+      driver.template heed<Signals>().rolling_speed = rolling_speed;
     }
     if constexpr (Heeding<Heeds...>::template contains<SpeedLimit>)
       driver.template heed<SpeedLimit>().factor = speed_factor;
     if constexpr (Heeding<Heeds...>::template contains<Conflicts>) {
       driver.template heed<Conflicts>().time_margin = time_margin;
+      driver.template heed<Conflicts>().stop_sign_margin = stop_sign_margin;
       driver.template heed<Conflicts>().safe_deceleration = signal_braking;
     }
     return driver;

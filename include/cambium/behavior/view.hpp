@@ -130,6 +130,7 @@ struct ViewArchetype {
   /// @name Lights
   ///@{
   [[nodiscard]] map::LightColor light(LightId id) const;  ///< current colour of a traffic light
+  [[nodiscard]] double shown_for(LightId id) const;       ///< time for which it has shown that colour [s]
   [[nodiscard]] double red_for(LightId id) const;         ///< time since it turned red [s]; negative: until it does
   ///@}
 };

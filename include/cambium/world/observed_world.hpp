@@ -213,6 +213,12 @@ class ObservedWorld {
     return index_of(id) < lights.size() ? lights[index_of(id)].at(time()) : map::LightColor::off;
   }
 
+  /// How long the light has shown its present colour [s]. Precondition: the light is on. O(1).
+  [[nodiscard]] double shown_for(LightId id) const {
+    auto const& lights = world_->roster().lights;
+    return index_of(id) < lights.size() ? lights[index_of(id)].shown_for(time()) : 0.0;
+  }
+
   /// Time [s] since the light turned red; negative: time until it will, which drivers know because yellow always lasts
   /// the same. Precondition: the light is on. O(1).
   [[nodiscard]] double red_for(LightId id) const {

@@ -36,6 +36,7 @@ struct ConflictUser {
   ExtraReach reach;
   bool is_behind_slow = false;                             ///< behind a slow vehicle that has not entered yet
   double place = std::numeric_limits<double>::infinity();  ///< where it waits, by `map::ConflictSection` [m]
+  double earliest = 0.0;                                   ///< time until it is there, by the bends before it [s]
 };
 
 /// Whether a shape needs the conflicts of the large shape.

@@ -56,6 +56,7 @@ struct Conflicts {
   bool keep_clear = true;
   double stop_margin = 1.0;
   double safe_deceleration = 3.0;
+  double stop_sign_margin = 0.0;
 
   static constexpr bool heeds_conflicts = true;  ///< agents must not exceed the shapes of the map's conflicts
   static constexpr char const* name = "conflicts";
@@ -78,7 +79,9 @@ struct Conflicts {
         parameter("keep_clear", &P::keep_clear, "do not stop within the junction"),
         parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to a line where it waits"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
-                  "by which it can stop before a conflict until that is free"));
+                  "by which it can stop before a conflict until that is free"),
+        parameter("stop_sign_margin", &P::stop_sign_margin, "s", Range{0, 20},
+                  "more before one that goes first, for a driver that comes from a stop sign"));
   }
 
   struct Memory {
@@ -332,8 +335,11 @@ struct Conflicts {
         auto const is_behind_slow = [&] {
           return first() && first()->speed < detail::starting_speed && first()->agent != user.agent;
         };
-        Other const other{user, at, detail::extra_reach(view, large, user.front, user.rear),
-                          own.waited >= own.patience && is_behind_slow()};
+        Other const other{.user = user,
+                          .at = at,
+                          .reach = detail::extra_reach(view, large, user.front, user.rear),
+                          .is_behind_slow = own.waited >= own.patience && is_behind_slow(),
+                          .earliest = way.time_from(at)};
         bool const is_next = own.notes_standing && first() && first()->agent == user.agent;
         claims[large] = std::max(claims[large], claim_of(view, conflict, large, other, own, limits, is_next));
       });
@@ -364,7 +370,7 @@ struct Conflicts {
   [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, bool large, Other other, Own& own,
                                Limits& limits, bool is_next) const {
     auto const& zone = conflict.zones[own.is_large][large];
-    auto const& [user, at, reach, behind_slow, place] = other;
+    auto const& [user, at, reach, behind_slow, place, earliest] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at, own_way = zone.begin - own.s;
     bool const is_in = way <= 0.0, own_is_in = own_way <= -detail::over_line,
@@ -376,7 +382,8 @@ struct Conflicts {
       double const there = at + conflict.shift, gap = there - user.rear - own.front;
       if (there > own.s && (gap > 0.0 || own_is_in)) {
         auto leader = detail::constraint_beside<typename Limits::Response>(view, user);
-        leader.gap = gap;
+        // One that pulls away counts where it is after a headway.
+        leader.gap = gap + limits.law().time_headway * std::max(0.0, user.speed - own.speed);
         limits.heed(leader);
       }
       if (gap > 0.0 || splits) return Claim::free;
@@ -403,7 +410,7 @@ struct Conflicts {
     if (has_entered || (yields && !is_red && detail::is_about_to_enter(other, own.dt)))
       return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
     if (detail::goes_first(view, conflict, zone, other, key, way, own_way, own)) return Claim::free;
-    return claim_in_time(zone, other, way, own_way, own);
+    return claim_in_time(view, conflict, zone, other, way, own_way, own);
   }
 
   /// Whether another vehicle has entered before the own one. Notes it in `Own::now` if it has, or if it stands where
@@ -437,24 +444,35 @@ struct Conflicts {
     double end = zone.other_end + other.reach.rear;  // where it leaves room for the own vehicle
     if (conflict.kind == map::OverlapKind::merge)
       end = std::min(end, zone.begin + view.shape().front + own.minimum_gap + user.rear - conflict.shift);
-    bool const leaves = has_entered && user.speed >= standing_speed;
-    double const out = leaves ? time_to_cover(end - other.at, user.speed, detail::pull_away, infinite) : infinite;
-    return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
+    if (!has_entered || user.speed < standing_speed) return Claim::blocked;
+    double const gap = std::max(0.0, end - other.at), latest = arrival(own, own_way) - 0.5 * time_margin;
+    double const gains = detail::is_large(view, view.shape(user)) ? detail::pull_away : 1.5 * detail::pull_away;
+    if (time_to_cover(gap, user.speed, gains, infinite) >= latest) return Claim::blocked;
+    // It leaves in time even if it brakes.
+    double const b = detail::judged_deceleration, end_speed = user.speed * user.speed - 2.0 * b * gap;  // squared
+    return end_speed > 0.0 && (user.speed - std::sqrt(end_speed)) / b < latest ? Claim::free : Claim::watch;
   }
 
   /// The claim of a vehicle that goes first, has not entered yet, and arrives at the zone after `way` [m]. Who has
   /// waited long takes a gap up to a second shorter, and after twice `longest_wait` any before one that can stop with
   /// ease.
-  [[nodiscard]] Claim claim_in_time(map::ConflictZone const& zone, Other const& other, double way, double own_way,
-                                    Own const& own) const {
-    auto const& [user, at, reach, behind_slow, place] = other;
+  template <class View>
+  [[nodiscard]] Claim claim_in_time(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
+                                    Other const& other, double way, double own_way, Own const& own) const {
+    auto const& [user, at, reach, behind_slow, place, earliest] = other;
     double const impatience = std::clamp((own.waited - own.patience) / 30.0, 0.0, 1.0);
-    double const margin = std::max(0.0, time_margin - impatience);
+    double const behind = std::max(0.0, time_margin - impatience);
+    double const before =
+        std::max(0.0, time_margin + (conflict.yields_after_stop ? stop_sign_margin : 0.0) - impatience);
+    double const soonest =
+        time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.desired_speed));
     Window const theirs{
-        time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.desired_speed)),
+        std::max(earliest, soonest),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};
-    Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
-    if (theirs.end + margin < ours.begin || ours.end + margin < theirs.begin) return Claim::free;
+    double const leaves =
+        conflict.kind == map::OverlapKind::merge ? merged_at(view, conflict, zone, user, own) : zone.end;
+    Window const ours{arrival(own, own_way), arrival(own, leaves - own.s) + build_up(own)};
+    if (theirs.end + behind < ours.begin || ours.end + before < theirs.begin) return Claim::free;
     bool const stops_with_ease = cambium::can_stop(user.speed, place - at, 2.0);
     return own.waited > own.patience + 2.0 * longest_wait && stops_with_ease ? Claim::free : Claim::yield;
   }
@@ -462,6 +480,26 @@ struct Conflicts {
   /// Earliest time [s] at which the own vehicle has driven `distance` [m].
   [[nodiscard]] double arrival(Own const& own, double distance) const {
     return time_to_cover(distance, own.speed, own.maximum_acceleration, std::max(own.speed, own.highest));
+  }
+
+  /// By how much later [s] it arrives because its acceleration builds up.
+  [[nodiscard]] static double build_up(Own const& own) {
+    if (!own.jerk_bound.matters() || own.speed >= own.highest) return 0.0;
+    double const missing = own.maximum_acceleration - own.jerk_bound.acceleration;
+    return std::max(0.0, 0.5 * missing / own.jerk_bound.jerk);
+  }
+
+  /// Corridor position of the own vehicle [m] from which on one that comes to the merge then follows it with ease.
+  template <class View>
+  [[nodiscard]] static double merged_at(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
+                                        RoadUser const& user, Own const& own) {
+    double const speed =
+        std::min(std::max(own.speed, own.highest),
+                 std::sqrt(own.speed * own.speed + 2.0 * own.maximum_acceleration * (zone.end - own.s)));
+    double const closing = std::max(0.0, user.speed - speed);
+    double const gap = own.minimum_gap + closing * closing / (2.0 * own.comfortable);
+    double const behind = zone.other_begin + conflict.shift + user.front + gap + view.shape().rear;
+    return std::clamp(behind, zone.begin, zone.end);
   }
 
   /// Whether the room behind the conflict is too small for the vehicle, as in a queue.

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/core/described.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/map/lanes/signals.hpp"
 
 namespace cambium {
 
@@ -13,6 +16,8 @@ struct Signals {
   double stop_margin = 1.0;
   double safe_deceleration = 3.0;
   double late_at_red = 0.0;
+  double reaction = 0.0;
+  double rolling_speed = 0.0;
 
   static constexpr char const* name = "signals";
   static constexpr char const* summary = "stops at red lights and stop signs";
@@ -24,7 +29,11 @@ struct Signals {
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
                   "a driver who would have to brake harder passes a light that has just turned yellow"),
         parameter("late_at_red", &P::late_at_red, "s", Range{0, 60},
-                  "the driver still passes a light that has been red for less than this when it gets there"));
+                  "the driver still passes a light that has been red for less than this when it gets there"),
+        parameter("reaction", &P::reaction, "s", Range{0, 10},
+                  "after which it responds to a light that turns yellow, or green before one that stands"),
+        parameter("rolling_speed", &P::rolling_speed, "m/s", Range{0, 10},
+                  "a driver this slow at a stop sign has stopped there; 0: it comes to a stop"));
   }
 
   struct Memory {
@@ -48,10 +57,61 @@ struct Signals {
     double const comfortable = law.comfortable_deceleration, fastest = speed + law.maximum_acceleration * dt;
     double const braking = stopping_distance(fastest, law.maximum_acceleration, comfortable, limits.jerk_bound);
     double const look_ahead = std::max(least, fastest * dt + braking + beyond);
-    auto const stop = detail::stop_at_signals(view, view.place().s + view.shape().front, speed, look_ahead, stop_margin,
-                                              safe_deceleration, late_at_red, memory.stopped_at);
+    auto const stop = stop_at(view, view.place().s + view.shape().front, speed, look_ahead, memory.stopped_at);
     limits.is_at_light = stop.is_light && speed < standing_speed;
     if (std::isfinite(stop.distance)) limits.stop_within(stop.distance, comfortable, dt);
+  }
+
+ private:
+  /// How far it may drive before signals that stop it.
+  struct Stop {
+    double distance = std::numeric_limits<double>::infinity();
+    bool is_light = false;  ///< a traffic light is among them
+  };
+
+  [[nodiscard]] bool can_stop(double speed, double distance) const {
+    return cambium::can_stop(speed, distance, safe_deceleration);
+  }
+
+  /// With its front end at `front` [m], for signals within `look_ahead` [m]; before the margin if it can. `stopped_at`
+  /// [m]: see `Memory`.
+  template <class View>
+  [[nodiscard]] Stop stop_at(View const& view, double front, double speed, double look_ahead, float& stopped_at) const {
+    Stop stop;
+    for (auto const& signal : view.corridor().signals) {
+      double const to_line = signal.line - front;
+      if (to_line > look_ahead) break;
+      if (to_line < 0.0) continue;
+      if (signal.kind == map::SignalKind::stop) {
+        if (speed < std::max(standing_speed, rolling_speed) && to_line < stop_margin + 1.0 + rolling_speed)
+          stopped_at = static_cast<float>(signal.line);
+        if (std::abs(static_cast<double>(stopped_at) - signal.line) < 0.1) continue;
+      } else {
+        if (passes(view, signal.light, speed, to_line)) continue;
+        stop.is_light = true;
+      }
+      double const before = can_stop(speed, to_line - stop_margin) ? stop_margin : 0.0;
+      stop.distance = std::min(stop.distance, std::max(0.0, to_line - before));
+    }
+    return stop;
+  }
+
+  /// Whether it passes a light `to_line` [m] ahead. Not to pass on red, it brakes up to 40 % harder.
+  template <class View>
+  [[nodiscard]] bool passes(View const& view, LightId light, double speed, double to_line) const {
+    auto const color = view.light(light);
+    if (color == map::LightColor::off) return true;
+    bool const is_new = view.shown_for(light) < reaction;
+    if (color == map::LightColor::green) return speed >= standing_speed || !is_new;
+    if (color == map::LightColor::yellow) {
+      bool const is_in_time = view.red_for(light) * speed + to_line <= 0.0;
+      double const braking = is_in_time ? safe_deceleration : 1.4 * safe_deceleration;
+      if (is_new || !cambium::can_stop(speed, to_line, braking)) return true;
+    }
+    if (late_at_red <= 0.0 || speed < standing_speed) return false;
+    double const red_for = view.red_for(light);
+    if (red_for >= late_at_red) return false;
+    return red_for + to_line / speed < late_at_red || !can_stop(speed, to_line);
   }
 };
 

@@ -7,10 +7,8 @@
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/behavior/law/slowing.hpp"
 #include "cambium/core/constants.hpp"
-#include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/corridor/corridor.hpp"
-#include "cambium/map/lanes/signals.hpp"
 
 namespace cambium {
 
@@ -90,7 +88,7 @@ namespace detail {
 
 /// A vehicle slower than this at a junction or a merge has hardly begun to move, or is about to stop [m/s]. Own
 /// choice.
-inline constexpr double starting_speed = 2.5;
+inline constexpr double starting_speed = 3.5;
 /// Acceleration of a vehicle that leaves a junction or merges [m/s^2]. Own choice.
 inline constexpr double pull_away = 1.0;
 
@@ -137,51 +135,6 @@ struct BendsAhead {
     if (motion.distance < ahead.bound.distance) ahead.bound = motion;
   }
   return ahead;
-}
-
-/// How far a vehicle may drive before signals that stop it.
-struct SignalStop {
-  double distance = std::numeric_limits<double>::infinity();
-  bool is_light = false;  ///< a traffic light is among them
-};
-
-/// Whether a driver passes a yellow or red light `to_line` [m] ahead, as it does at up to `late` [s] of red: it is at
-/// the line by then, or would have to brake harder than `deceleration` [m/s^2].
-template <class View>
-[[nodiscard]] bool passes_late(View const& view, LightId light, double speed, double to_line, double deceleration,
-                               double late) {
-  double const red_for = view.red_for(light);
-  if (red_for >= late || speed < standing_speed) return false;
-  return red_for + to_line / speed < late || !can_stop(speed, to_line, deceleration);
-}
-
-/// Where a vehicle with its front end at `front` [m] must stop for signals within `look_ahead` [m]: red lights, yellow
-/// lights if it can stop by `deceleration` [m/s^2], and stop signs. It stops `margin` [m] before the line if it can.
-/// `stopped_at` [m] is updated: the line of the last stop sign at which the vehicle has stopped. `late` [s]: see
-/// `Signals::late_at_red`. O(signals).
-template <class View>
-[[nodiscard]] SignalStop stop_at_signals(View const& view, double front, double speed, double look_ahead, double margin,
-                                         double deceleration, double late, float& stopped_at) {
-  SignalStop stop;
-  for (auto const& signal : view.corridor().signals) {
-    double const to_line = signal.line - front;
-    if (to_line > look_ahead) break;
-    if (to_line < 0.0) continue;
-    if (signal.kind == map::SignalKind::stop) {
-      if (speed < standing_speed && to_line < margin + 1.0) stopped_at = static_cast<float>(signal.line);
-      if (std::abs(static_cast<double>(stopped_at) - signal.line) < 0.1) continue;
-    } else {
-      auto const color = view.light(signal.light);
-      if (color == map::LightColor::off || color == map::LightColor::green) continue;
-      if (color == map::LightColor::yellow && !can_stop(speed, to_line, deceleration)) continue;
-      if (late > 0.0 && passes_late(view, signal.light, speed, to_line, deceleration, late)) [[unlikely]]
-        continue;
-      stop.is_light = true;
-    }
-    double const before = can_stop(speed, to_line - margin, deceleration) ? margin : 0.0;
-    stop.distance = std::min(stop.distance, std::max(0.0, to_line - before));
-  }
-  return stop;
 }
 
 }  // namespace detail

@@ -72,6 +72,15 @@ struct CorridorSignal {
 struct ConflictWay {
   double index_begin{}, index_end{};
   double begin{};  ///< of the way where the stretch begins: position on the other lane's path, negative before it [m]
+  /// Shortest time to the conflict, from the stretch's begin and from its end, that bends permit even the fastest [s].
+  double time_from_begin{}, time_from_end{};
+
+  /// The same from a position on the way [m], never more than it is: bends mostly come last.
+  [[nodiscard]] double time_from(double at) const {
+    double const length = index_end - index_begin,
+                 share = length > 0.0 ? std::clamp((at - begin) / length, 0.0, 1.0) : 1.0;
+    return time_from_begin + share * (time_from_end - time_from_begin);
+  }
 };
 
 /// Where the reference points of two vehicles, of a size each, may be when these touch.
@@ -122,6 +131,7 @@ struct Conflict {
   OverlapKind kind = OverlapKind::crossing;
   RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
   bool is_signed = false;                       ///< priorities or signs say who goes first, or both have priority
+  bool yields_after_stop = false;               ///< this corridor's traffic yields, and has a stop sign
   ConflictZones zones;                          ///< that of two large ones holds all others and is not empty
   /// The section that it is in, by the size of the corridor's vehicle and whether large vehicles are among the others.
   std::array<std::array<ConflictSection, 2>, 2> section;

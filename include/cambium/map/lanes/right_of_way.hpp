@@ -20,7 +20,8 @@ namespace detail {
 
 /// What the signs and lights before a junction tell a lane's traffic.
 struct SignsBefore {
-  int rank{};  ///< 1: it has priority; -1: it gives way; 0: neither
+  int rank{};          ///< 1: it has priority; -1: it gives way; 0: neither
+  bool stops = false;  ///< it stops before it gives way
   LightId light = none<LightId>;
 };
 
@@ -34,7 +35,7 @@ struct SignsBefore {
       if (signal.kind == SignalKind::light)
         signs.light = signal.light;
       else
-        signs.rank = signal.kind == SignalKind::priority ? 1 : -1;
+        signs.rank = signal.kind == SignalKind::priority ? 1 : -1, signs.stops = signal.kind == SignalKind::stop;
     }
   };
   auto const junction = map.road(lane.road).junction;

@@ -66,18 +66,30 @@ struct LightPlan {
   /// What it shows at `time` [s]. O(1).
   [[nodiscard]] LightColor at(double time) const {
     if (!(cycle > 0.0)) return LightColor::off;
-    double const since = time - green_begin, passed = since - std::floor(since / cycle) * cycle;
-    double const green = std::min(cycle, green_end - green_begin);
+    double const passed = since_green(time), green = std::min(cycle, green_end - green_begin);
     if (passed < green) return LightColor::green;
     return passed < green + yellow ? LightColor::yellow : LightColor::red;
+  }
+
+  /// How long it has shown its colour at `time` [s]; 0 for a light that is off. O(1).
+  [[nodiscard]] double shown_for(double time) const {
+    if (!(cycle > 0.0)) return 0.0;
+    double const passed = since_green(time), green = std::min(cycle, green_end - green_begin);
+    return passed - (passed < green ? 0.0 : passed < green + yellow ? green : green + yellow);
   }
 
   /// Time since the light turned red at `time` [s]; while it is green or yellow, minus the time until it does. 0 for a
   /// light that is off. O(1).
   [[nodiscard]] double red_for(double time) const {
     if (!(cycle > 0.0)) return 0.0;
-    double const since = time - green_begin, passed = since - std::floor(since / cycle) * cycle;
-    return passed - std::min(cycle, green_end - green_begin) - yellow;
+    return since_green(time) - std::min(cycle, green_end - green_begin) - yellow;
+  }
+
+ private:
+  /// Time in the cycle since green began [s].
+  [[nodiscard]] double since_green(double time) const {
+    double const since = time - green_begin;
+    return since - std::floor(since / cycle) * cycle;
   }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -10,16 +11,37 @@
 
 namespace cambium::map::detail {
 
+/// The fastest that comes to a conflict, followed upstream from there: it brakes for bends, late and hard.
+struct FastestArrival {
+  double speed = 50.0;  ///< [m/s]
+  double time = 0.0;    ///< until it is there [s]
+
+  /// Goes back from position `to` to `from` [m] of a lane's path. O(length).
+  void go_back(geometry::Line const& path, double from, double to) {
+    constexpr double step = 4.0, lateral = 3.0, braking = 4.0;  // [m], [m/s^2]
+    for (double end = to; end > from;) {
+      double const begin = std::max(from, end - step), length = end - begin;
+      double const turn = std::abs(path.pose(end).heading - path.pose(begin).heading);
+      double const curvature = turn / std::max(length, 0.5 * step);
+      speed = std::min(50.0, std::sqrt(speed * speed + 2.0 * braking * length));
+      if (speed * speed * curvature > lateral) speed = std::sqrt(lateral / curvature);
+      time += length / speed;
+      end = begin;
+    }
+  }
+};
+
 /// Adds the lanes downstream (`ahead`) or upstream of `lane`, as far as way position `until` [m], each once, by the
-/// shortest way.
-inline void add_ways_beyond(Map const& map, Lane const& lane, bool ahead, double until,
-                            std::vector<ConflictWay>& ways) {
+/// shortest way. `conflict` is where the conflict begins [m], `arrival` the one from the begin of `lane`.
+inline void add_ways_beyond(Map const& map, Lane const& lane, bool ahead, double until, double conflict,
+                            FastestArrival const& arrival, std::vector<ConflictWay>& ways) {
   struct Way {
     LaneId lane;
     double far_end;  // [m]
+    FastestArrival arrival;
   };
   std::vector<bool> seen(map.lanes().size());
-  std::vector<Way> open{{lane.id, ahead ? lane.length() : 0.0}};
+  std::vector<Way> open{{lane.id, ahead ? lane.length() : 0.0, arrival}};
   for (std::size_t i = 0; i < open.size(); ++i) {
     auto const way = open[i];
     if (ahead ? way.far_end >= until : way.far_end <= until) continue;
@@ -30,18 +52,29 @@ inline void add_ways_beyond(Map const& map, Lane const& lane, bool ahead, double
       double const far_end = ahead ? way.far_end + next.length() : way.far_end - next.length();
       double const from = ahead ? 0.0 : std::max(0.0, until - far_end);  // on the lane
       double const to = ahead ? std::min(next.length(), until - way.far_end) : next.length();
-      ways.push_back({next.index_begin + from, next.index_begin + to, ahead ? way.far_end : far_end + from});
-      open.push_back({id, far_end});
+      ConflictWay stretch{next.index_begin + from, next.index_begin + to, ahead ? way.far_end : far_end + from};
+      Way reached{id, far_end, way.arrival};
+      if (!ahead) {
+        stretch.time_from_end = reached.arrival.time;
+        reached.arrival.go_back(next.path, from, std::clamp(conflict - far_end, from, to));
+        stretch.time_from_begin = reached.arrival.time;
+      }
+      ways.push_back(stretch);
+      open.push_back(reached);
     }
   }
 }
 
-/// The ways by which traffic comes to, and leaves, positions `from` to `to` [m] of `lane`, see `Conflict::ways`.
-[[nodiscard]] inline std::vector<ConflictWay> ways_through(Map const& map, Lane const& lane, double from, double to) {
+/// The ways by which traffic comes from position `from` [m] of `lane` to a conflict that begins at position `conflict`,
+/// and leaves it up to position `to`, see `Conflict::ways`.
+[[nodiscard]] inline std::vector<ConflictWay> ways_through(Map const& map, Lane const& lane, double from,
+                                                           double conflict, double to) {
   double const begin = std::max(0.0, from);
-  std::vector<ConflictWay> ways{{lane.index_begin + begin, lane.index_begin + lane.length(), begin}};
-  add_ways_beyond(map, lane, true, to, ways);
-  add_ways_beyond(map, lane, false, from, ways);
+  FastestArrival arrival;
+  if (conflict > 0.0) arrival.go_back(lane.path, begin, std::min(conflict, lane.length()));
+  std::vector<ConflictWay> ways{{lane.index_begin + begin, lane.index_begin + lane.length(), begin, arrival.time}};
+  add_ways_beyond(map, lane, true, to, conflict, arrival, ways);
+  add_ways_beyond(map, lane, false, from, conflict, arrival, ways);
   return ways;
 }
 

@@ -85,14 +85,16 @@ class ConflictFinder {
     conflict.other = overlap.other;
     conflict.kind = kind_of(map_.lane(piece.lane), overlap);
     conflict.right_of_way = right_of_way(map_, piece.lane, overlap);
-    conflict.is_signed = signed_right_of_way(map_, piece.lane, overlap).has_value() ||
-                         signs_before(map_, map_.lane(piece.lane)).rank > 0;
+    auto const by_sign = signed_right_of_way(map_, piece.lane, overlap);
+    auto const signs = signs_before(map_, map_.lane(piece.lane));
+    conflict.is_signed = by_sign.has_value() || signs.rank > 0;
+    conflict.yields_after_stop = signs.stops && by_sign == RightOfWay::yields;
     double const begin = position(overlap.begin), end = position(overlap.end);
     conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
     if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
     conflict.lane_end = piece.end;
     conflict.other_lane_end = map_.lane(overlap.other).length();
-    conflict.light = signs_before(map_, map_.lane(piece.lane)).light;
+    conflict.light = signs.light;
     conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
     for (auto const& hull : zones_in(number, range_of(overlap, begin, end, conflict.kind), conflict, true, true))
       for (auto const& zones : zones_by_size(number, hull, conflict)) {
@@ -270,9 +272,24 @@ class ConflictFinder {
       }
     for (auto& sections : conflict.section)
       for (auto& section : sections) section.line = begin;
-    double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
-    conflict.ways =
-        ways_through(map_, map_.lane(conflict.other), conflict.hull().other_begin - view, conflict.hull().other_end);
+    auto const& other = map_.lane(conflict.other);
+    auto const& hull = conflict.hull();
+    double const view = conflict.kind == OverlapKind::split ? 0.0 : view_along(other);
+    conflict.ways = ways_through(map_, other, hull.other_begin - view, hull.other_begin, hull.other_end);
+  }
+
+  /// How far before a conflict traffic on a lane counts [m]: `MapOptions::merge_view`, and on fast roads as far as one
+  /// drives in the longest gap that people wait for.
+  [[nodiscard]] double view_along(Lane const& lane) const {
+    constexpr double longest_gap = 9.0, farthest = 300.0;  // [s], [m]
+    double highest = 0.0;
+    auto const note = [&](Lane const& one) {
+      for (auto const& step : one.speed_limits)
+        if (std::isfinite(step.limit)) highest = std::max(highest, step.limit);
+    };
+    note(lane);
+    for (auto const id : ends_of(lane, false)) note(map_.lane(id));
+    return std::max(map_.options().merge_view, std::min(farthest, longest_gap * highest));
   }
 
   static void sort(std::vector<Conflict>& conflicts) {

@@ -91,7 +91,8 @@ class CrossingFinder {
     crossing.end = std::min(length, crossing.end + step);
     crossing.lane_begin = std::max(0.0, crossing.lane_begin - half);
     crossing.lane_end = std::min(lane.length(), crossing.lane_end + half);
-    crossing.ways = ways_through(map_, lane, crossing.lane_begin - options_.view, crossing.lane_end + farthest_rear);
+    crossing.ways = ways_through(map_, lane, crossing.lane_begin - options_.view, crossing.lane_begin,
+                                 crossing.lane_end + farthest_rear);
   }
 
   static constexpr double farthest_rear = 15.0;  // behind the reference point of a long vehicle [m]
