@@ -181,7 +181,7 @@ std::vector<Row> noise(std::uint64_t seed) {
     Sim world(map, {.seed = seed + number});
     cb::RandomStream random(seed, static_cast<std::uint32_t>(number), 0);
     auto spec = People{}.draw(random);
-    spec.behavior = Human{.nominal = std::get<Driver>(spec.behavior), .noise = 0.21};
+    spec.behavior = Human{.nominal = std::get<Driver>(spec.behavior)};
     spec.speed = speed;
     spec.position = {10.0, -1.875};
     auto const follower = world.add(spec);

@@ -16,15 +16,13 @@ namespace field {
 
 Sim::AgentSpec People::draw(cb::RandomStream& random) const {
   bool const is_truck = cb::uniform01(random) < truck_share;
-  auto const driver = (is_truck ? trucks : cars).draw(random).of(Driver{.law = {.base = cb::Acc::Base::improved_idm}});
+  auto const driver = (is_truck ? trucks : cars).draw(random).of(Driver{});
   return {.speed = driver.law.desired_speed,
           .shape = is_truck ? cb::geometry::truck() : cb::geometry::car(),
           .behavior = driver};
 }
 
-Human with_errors(Driver const& driver) {
-  return {.nominal = driver, .attentive = 3.2, .looks_away = 0.65, .noise = 0.21};
-}
+Human with_errors(Driver const& driver) { return {.nominal = driver, .attentive = 3.2, .looks_away = 0.65}; }
 
 std::shared_ptr<cb::Map const> straight_road(double length, std::size_t lanes, double limit, double drop) {
   using namespace cb::map;

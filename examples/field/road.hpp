@@ -21,7 +21,7 @@ namespace field {
 
 namespace cb = cambium;
 
-using Driver = cb::BasicUrbanDriver<cb::Acc>;
+using Driver = cb::UrbanDriver;
 using Human = cb::HumanDriver<Driver>;
 using Sim =
     cb::World<cb::BehaviorSet<Driver, Human, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;

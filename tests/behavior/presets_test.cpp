@@ -114,15 +114,18 @@ TEST_CASE("temperaments have the numbers that their description derives from the
             d.lateral.keep.merging_headway,
             at.heed<cb::Signals>().late_at_red,
             at.heed<cb::SpeedLimit>().factor,
-            at.heed<cb::Conflicts>().time_margin};
+            at.heed<cb::Conflicts>().time_margin,
+            at.heed<cb::Conflicts>().stop_sign_margin,
+            at.heed<cb::Signals>().reaction,
+            at.heed<cb::Signals>().rolling_speed};
   };
   using namespace cb::presets;
   CHECK(numbers(timid<cb::Mobil>(), timid<cb::Intersection>()) ==
-        std::vector{0.5, 0.3, 2.0, 2.5, 2.0, 4.0, 2.0, 0.0, 0.95, 2.0});
+        std::vector{0.5, 0.3, 2.0, 2.5, 2.0, 4.0, 2.0, 0.0, 0.95, 2.0, 4.0, 0.8, 0.0});
   CHECK(numbers(normal<cb::Mobil>(), normal<cb::Intersection>()) ==
-        std::vector{0.2, 0.2, 4.0, 4.5, 3.0, 3.0, 1.0, 0.0, 1.0, 1.0});
+        std::vector{0.2, 0.2, 4.0, 4.5, 3.0, 3.6, 1.0, 0.0, 1.0, 0.5, 3.0, 0.8, 0.0});
   CHECK(numbers(aggressive<cb::Mobil>(), aggressive<cb::Intersection>()) ==
-        std::vector{0.0, 0.1, 5.0, 5.5, 4.0, 2.0, 0.5, 1.0, 1.1, 0.6});
+        std::vector{0.0, 0.1, 5.0, 5.5, 4.0, 2.0, 0.5, 1.0, 1.1, 0.3, 2.0, 0.8, 3.0});
   CHECK(timid<cb::Intersection>().law.time_headway == timid().time_headway);
   CHECK(timid<cb::IdmClassic>().law.exponent == timid().exponent);
 }

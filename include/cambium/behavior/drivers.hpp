@@ -19,8 +19,9 @@
 
 namespace cambium {
 
-/// Drivers composed of the parts in law/, lateral/ and heed/, with the defaults of the literature. Further heeds are
-/// added by `Also`, as in `IdmClassic::Also<SpeedLimit, Signals>`.
+/// Drivers composed of the parts in law/, lateral/ and heed/. `UrbanDriver` and `AdaptiveCruiseControl` drive like
+/// people by default, those that follow by IDM with BARK's parameters. Further heeds are added by `Also`, as in
+/// `IdmClassic::Also<SpeedLimit, Signals>`.
 
 /// Follows its lane and the next vehicle in it by IDM; defaults are BARK's.
 using IdmClassic = Driver<Idm, KeepLane, Pedestrians>;
@@ -54,7 +55,7 @@ static_assert(BehaviorModel<Intersection>);
 
 /// A driver for town: changes lanes for its route and for speed by MOBIL, obeys limits, slows down for bends, stops at
 /// lights and stop signs and for pedestrians, passes cyclists, and gives way at junctions. `Law`: how it follows.
-template <class Law = Idm>
+template <class Law = Acc>
 using BasicUrbanDriver = Driver<Law, ChangeLanes<MobilRule<>>, SpeedLimit, Bends, Signals, Pedestrians, Conflicts>;
 using UrbanDriver = BasicUrbanDriver<>;
 static_assert(BehaviorModel<UrbanDriver>);

@@ -43,8 +43,21 @@ namespace cambium::presets {
           .lowest_acceleration = -6.0};
 }
 
+/// BARK's defaults: 15 m/s, 1.5 s, 1.7 m/s^2, 1.67 m/s^2, 2 m; those of `Idm`.
+[[nodiscard]] constexpr Idm bark() { return {}; }
+
+/// A usual driver of a car: about the means of `motorway_cars` and `town_cars`.
+[[nodiscard]] constexpr Idm normal() {
+  return {.desired_speed = 120 / 3.6,
+          .time_headway = 1.2,
+          .minimum_gap = 2.0,
+          .maximum_acceleration = 1.8,
+          .comfortable_deceleration = 2.3,
+          .lowest_acceleration = -8.0};
+}
+
 /// A driver in a hurry: short headway, high acceleration, late and hard braking (Treiber, Kesting 2013, "Traffic Flow
-/// Dynamics", section 11.3.1). The numbers are ours, chosen around `kesting_2010_car`.
+/// Dynamics", section 11.3.1). The numbers are ours, chosen around `normal`.
 [[nodiscard]] constexpr Idm aggressive() {
   return {.desired_speed = 140 / 3.6,
           .time_headway = 0.9,
@@ -85,22 +98,22 @@ constexpr void follow_as(Idm const& idm, Law& law) {
 /// as in SUMO, whose drivers' speed factor is normal(1, 0.1). The other numbers, and where in these ranges a
 /// temperament lies, are ours.
 struct Temperament {
-  Idm idm = kesting_2010_car();
+  Idm idm = normal();
   double politeness = 0.2;            ///< `MobilRule::politeness` [-]
   double threshold = 0.2;             ///< `MobilRule::threshold` [m/s^2]
   double lane_change_braking = 4.0;   ///< `ChangeLanes::safe_deceleration`; 0.5 m/s^2 more abort one [m/s^2]
   double lateral_acceleration = 3.0;  ///< `Bends::lateral_acceleration` [m/s^2]
-  double signal_braking = 3.0;        ///< `Signals::safe_deceleration`: higher, it stops at yellow more often [m/s^2]
+  double signal_braking = 3.6;        ///< `Signals::safe_deceleration`: higher, it stops at yellow more often [m/s^2]
   double bias = 0.0;                  ///< `MobilRule::bias` [m/s^2]
   double change_duration = 4.0;       ///< `LaneChangeCourse::duration` [s]
   double others_headway = 1.5;        ///< `ChangeLanes::others`: the headway that it expects others to keep [s]
   double merging_headway = 1.0;       ///< `KeepLane::merging_headway` [s]
   double late_at_red = 0.0;           ///< `Signals::late_at_red` [s]
   double speed_factor = 1.0;          ///< `SpeedLimit::factor` [-]
-  double time_margin = 1.0;           ///< `Conflicts::time_margin` [s]
+  double time_margin = 0.5;           ///< `Conflicts::time_margin` [s]
   double jerk = 2.5;                  ///< `Driver::jerk` [m/s^3]
-  double stop_sign_margin = 0.0;      ///< `Conflicts::stop_sign_margin` [s]
-  double reaction = 0.0;              ///< `Signals::reaction` [s]
+  double stop_sign_margin = 3.0;      ///< `Conflicts::stop_sign_margin` [s]
+  double reaction = 0.8;              ///< `Signals::reaction` [s]
   double rolling_speed = 0.0;         ///< `Signals::rolling_speed` [m/s]
 
   /// `driver` with this temperament: sets those of the above that its parts have. A law other than IDM gets what every
@@ -123,7 +136,6 @@ struct Temperament {
     if constexpr (Heeding<Heeds...>::template contains<Conflicts>) {
       driver.template heed<Conflicts>().time_margin = time_margin;
       driver.template heed<Conflicts>().stop_sign_margin = stop_sign_margin;
-      driver.template heed<Conflicts>().safe_deceleration = signal_braking;
     }
     return driver;
   }
@@ -142,10 +154,7 @@ struct Temperament {
   constexpr void give(Law& law) const {
     follow_as(idm, law);
   }
-  constexpr void give(KeepLane& lateral) const {
-    lateral.merging_headway = merging_headway;
-    lateral.safe_deceleration = signal_braking;
-  }
+  constexpr void give(KeepLane& lateral) const { lateral.merging_headway = merging_headway; }
   constexpr void give(TrackLine& lateral) const { give(lateral.keep); }
   template <class Rule>
   constexpr void give(ChangeLanes<Rule>& lateral) const {
@@ -178,7 +187,8 @@ template <class Driver>
                      .signal_braking = 4.0,
                      .merging_headway = 2.0,
                      .speed_factor = 0.95,
-                     .time_margin = 2.0}
+                     .time_margin = 2.0,
+                     .stop_sign_margin = 4.0}
       .of(Driver{});
 }
 /// A driver of usual temperament: the parameters of `Temperament{}`.
@@ -198,7 +208,9 @@ template <class Driver>
                      .merging_headway = 0.5,
                      .late_at_red = 1.0,
                      .speed_factor = 1.1,
-                     .time_margin = 0.6}
+                     .time_margin = 0.3,
+                     .stop_sign_margin = 2.0,
+                     .rolling_speed = 3.0}
       .of(Driver{});
 }
 
@@ -254,6 +266,8 @@ inline constexpr Preset all[] = {
      kesting_2010_car()},
     {"kesting_2010_truck", "Kesting, Treiber, Helbing 2010, table 1 (second-hand); bounds of acceleration: own",
      kesting_2010_truck()},
+    {"bark", "BARK's defaults", bark()},
+    {"normal", "about the means of presets::motorway_cars and town_cars", normal()},
     {"aggressive", "own numbers; direction: Treiber, Kesting 2013, section 11.3.1", aggressive()},
     {"timid", "own numbers, likewise", timid()},
     {"cyclist", "own numbers, near SUMO's default speed of bicycles", cyclist()}};

@@ -68,7 +68,8 @@ CAMBIUM_COLD void try_to_add(JunctionSite const& site, JunctionTraffic const& tr
   std::optional<AgentId> id;
   if (traffic.scattered_ids) id = static_cast<AgentId>(random() >> 33);
   double const desired = 8.0 + 7.0 * uniform01(random);
-  auto const idm = cycles ? presets::cyclist() : Idm{.desired_speed = desired};
+  auto idm = cycles ? presets::cyclist() : presets::normal();
+  if (!cycles) idm.desired_speed = desired;
   UrbanDriver driver;
   presets::follow_as(idm, driver.law);
   driver.lateral.keep.keep_to_side = cycles;

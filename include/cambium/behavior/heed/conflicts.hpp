@@ -50,13 +50,13 @@ namespace cambium {
 /// sizes of the two vehicles, see `MapOptions::conflict_shape`.
 struct Conflicts {
   double look_ahead = 80.0;
-  double time_margin = 1.0;
+  double time_margin = 0.5;
   double assumed_acceleration = 1.5;
   double patience = 1.0;
   bool keep_clear = true;
   double stop_margin = 1.0;
   double safe_deceleration = 3.0;
-  double stop_sign_margin = 0.0;
+  double stop_sign_margin = 3.0;
 
   static constexpr bool heeds_conflicts = true;  ///< agents must not exceed the shapes of the map's conflicts
   static constexpr char const* name = "conflicts";

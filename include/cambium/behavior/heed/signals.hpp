@@ -14,9 +14,9 @@ namespace cambium {
 /// Stops at red lights and stop signs; at yellow lights if it can stop by `safe_deceleration`.
 struct Signals {
   double stop_margin = 1.0;
-  double safe_deceleration = 3.0;
+  double safe_deceleration = 3.6;
   double late_at_red = 0.0;
-  double reaction = 0.0;
+  double reaction = 0.8;
   double rolling_speed = 0.0;
 
   static constexpr char const* name = "signals";

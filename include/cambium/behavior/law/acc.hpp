@@ -38,22 +38,23 @@ class AccLaw;
 /// The ACC model as a driver's law: without overreaction to small gaps, such as after another vehicle has cut in, if
 /// the leader's acceleration makes them harmless. It is based on IDM as in Kesting, Treiber, Helbing 2010, "Enhanced
 /// intelligent driver model to access the impact of driving strategies on traffic capacity", or on the Improved IDM as
-/// in Treiber, Kesting 2013, section 11.3.8.
+/// in Treiber, Kesting 2013, section 11.3.8. Defaults are about the means of how people drive cars, see
+/// `presets::normal`.
 struct Acc {
   static constexpr bool asks_acceleration = true;
 
   enum class Base : std::uint8_t { idm, improved_idm };
 
   double desired_speed = Idm{}.desired_speed;
-  double time_headway = Idm{}.time_headway;
-  double minimum_gap = Idm{}.minimum_gap;
-  double maximum_acceleration = Idm{}.maximum_acceleration;
-  double comfortable_deceleration = Idm{}.comfortable_deceleration;
+  double time_headway = 1.2;
+  double minimum_gap = 2.0;
+  double maximum_acceleration = 1.8;
+  double comfortable_deceleration = 2.3;
   double exponent = Idm{}.exponent;
-  double lowest_acceleration = Idm{}.lowest_acceleration;
+  double lowest_acceleration = -8.0;
   double highest_acceleration = Idm{}.highest_acceleration;
   double coolness = 0.99;
-  Base base = Base::idm;
+  Base base = Base::improved_idm;
 
   static constexpr char const* name = "acc";
   static constexpr char const* summary =

@@ -61,7 +61,7 @@ struct HumanDriver {
   bool anticipates = true;
   double attentive = 10.0;
   double looks_away = 0.0;
-  double noise = 0.0;
+  double noise = 0.21;
   double noise_persistence = 1.3;
 
   static constexpr char const* name = "human_driver";
