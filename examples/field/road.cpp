@@ -22,7 +22,11 @@ Sim::AgentSpec People::draw(cb::RandomStream& random) const {
           .behavior = driver};
 }
 
-Human with_errors(Driver const& driver) { return {.nominal = driver, .attentive = 3.2, .looks_away = 0.65}; }
+Human with_errors(Driver const& driver) {
+  Human human{.nominal = driver, .attentive = 3.2, .looks_away = 0.65};
+  human.reaction_time = std::min(human.reaction_time, 0.5 * driver.law.time_headway);  // who is close pays attention
+  return human;
+}
 
 std::shared_ptr<cb::Map const> straight_road(double length, std::size_t lanes, double limit, double drop) {
   using namespace cb::map;

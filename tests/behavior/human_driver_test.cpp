@@ -51,7 +51,8 @@ Human precise(double reaction_time, bool anticipates) {
           .reaction_time = reaction_time,
           .gap_error = 0.0,
           .rate_error = 0.0,
-          .anticipates = anticipates};
+          .anticipates = anticipates,
+          .noise = 0.0};
 }
 
 /// Humans behind a leader, in equilibrium at its speed; agent 0 leads.
@@ -140,7 +141,8 @@ TEST_CASE_TEMPLATE("a human without imperfections drives as the nominal behaviou
     human.set_behavior(id, cb::HumanDriver<Nominal>{.nominal = std::get<Nominal>(human.roster().agents[i].behavior),
                                                     .reaction_time = 0.0,
                                                     .gap_error = 0.0,
-                                                    .rate_error = 0.0});
+                                                    .rate_error = 0.0,
+                                                    .noise = 0.0});
   }
   step_all(150, 0.2, nominal, human);
   for (std::size_t i = 0; i < human.size(); ++i)
@@ -155,7 +157,7 @@ TEST_CASE("a human without imperfections does so among cyclists, and where it ob
     Noisy world(straight_road(1, 1000.0), {.seed = 3});
     cb::IdmClassic const exact{.law = {.desired_speed = 12.0}};
     Noisy::Behaviors::Any behavior = exact;
-    if (human) behavior = Human{.nominal = exact, .reaction_time = 0.0, .gap_error = 0.0, .rate_error = 0.0};
+    if (human) behavior = Human{.nominal = exact, .reaction_time = 0.0, .gap_error = 0.0, .rate_error = 0.0, .noise = 0.0};
     for (int i = 0; i < 8; ++i) {
       bool const cycles = i % 2 == 1;
       world.add({.position = {20.0 + 25.0 * i, cycles ? -3.0 : -1.75},
@@ -236,7 +238,8 @@ TEST_CASE("errors are normal, last, and show in the gaps that drivers keep") {
                      .reaction_time = 0.6,
                      .gap_error = 0.1,
                      .rate_error = 0.0,
-                     .persistence = 2000.0};
+                     .persistence = 2000.0,
+                     .noise = 0.0};
   double sum = 0.0, squares = 0.0, product = 0.0, variance = 0.0;
   int n = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {

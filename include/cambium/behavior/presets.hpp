@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 
 #include "cambium/behavior/drivers.hpp"
@@ -139,13 +140,15 @@ struct Temperament {
     }
     return driver;
   }
-  /// The same for the driver in a wrapper, its `nominal`.
+  /// The same for the driver in a wrapper, its `nominal`; one that responds late does so within half of the headway.
   template <class Wrapper>
   [[nodiscard]] constexpr Wrapper of(Wrapper wrapper) const requires requires {
     wrapper.nominal;
   }
   {
     wrapper.nominal = of(wrapper.nominal);
+    if constexpr (requires { wrapper.reaction_time; })  // who is close pays attention
+      wrapper.reaction_time = std::min(wrapper.reaction_time, 0.5 * idm.time_headway);
     return wrapper;
   }
 

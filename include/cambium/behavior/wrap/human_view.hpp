@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/constants.hpp"
 
 namespace cambium {
 
@@ -15,15 +16,15 @@ struct HumanEstimate {
   double rate_error = 0.0;    ///< error of the other's estimated speed, per metre of gap [1/s]
   double reach = 0.0;         ///< the estimate is for this time ahead [s]
   double acceleration = 0.0;  ///< own, assumed until then [m/s^2]
-  bool alone = false;         ///< sees no road users
+  bool alone = false;         ///< sees no road users, but where ways cross
   bool decides = false;       ///< for later: the present acceleration bounds nothing
 };
 
 /// A view as an imperfect driver has it: like `View`, but lengthwise distances and speeds of road users in lanes are
 /// estimated with the driver's errors, and extrapolated to a time ahead (Treiber, Kesting, Helbing 2006): the own place
 /// at constant speed, the own speed at constant acceleration, gaps at a constant approach rate, which itself stays. So
-/// a driver that brakes sees its leader slower by as much, and standing road users come closer. Objects are known to
-/// stand. Lateral positions and the answers of `View::state(user)`, `around(distance, f)`, `off_lanes`,
+/// a driver that brakes sees its leader slower by as much; one that stands is seen to stand, and comes closer. Objects
+/// are known to stand. Lateral positions and the answers of `View::state(user)`, `around(distance, f)`, `off_lanes`,
 /// `acceleration` and `light` stay as they are. With a default `HumanEstimate` all answers equal those of `View`, to
 /// the last bit.
 template <class View>
@@ -86,11 +87,10 @@ class HumanView : public View {
   }
   template <class F>
   void on_lane(double index_begin, double index_end, F&& f) const {
-    if (!estimate_.alone)
-      View::on_lane(index_begin, index_end, [&](RoadUser user) {
-        user.s += estimate_.reach * user.speed;
-        f(user);
-      });
+    View::on_lane(index_begin, index_end, [&](RoadUser user) {
+      user.s += estimate_.reach * user.speed;
+      f(user);
+    });
   }
 
  private:
@@ -112,7 +112,7 @@ class HumanView : public View {
     }
     user.gap += sign * (estimate_.reach * user.speed - way_);
     user.s += sign * (user.gap - before) + way_;
-    user.speed += faster_;
+    if (user.speed >= standing_speed) user.speed += faster_;
     return user;
   }
   [[nodiscard]] std::optional<RoadUser> seen(std::optional<RoadUser> const& user, int sign) const {
