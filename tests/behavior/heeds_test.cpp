@@ -298,7 +298,7 @@ TEST_CASE_TEMPLATE("every driver meets a lower speed limit in time if the rules 
     }
     INFO("before ", before, ", behind ", behind, ", hardest ", hardest);
     CHECK((before < 10.3) == obeys);
-    CHECK((behind > 0.0 && behind < 6.3) == obeys);
+    CHECK((behind > 0.0 && behind < 6.5) == obeys);
     if (obeys) CHECK(before > 9.0);
     CHECK(hardest > -2.5);
   });

@@ -115,7 +115,7 @@ TEST_CASE("temperaments have the numbers that their description derives from the
             at.heed<cb::Signals>().late_at_red,
             at.heed<cb::SpeedLimit>().factor,
             at.heed<cb::Conflicts>().time_margin,
-            at.heed<cb::Conflicts>().stop_sign_margin,
+            at.heed<cb::Conflicts>().minor_road_margin,
             at.heed<cb::Signals>().reaction,
             at.heed<cb::Signals>().rolling_speed};
   };

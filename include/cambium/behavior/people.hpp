@@ -24,7 +24,7 @@ struct Population {
   Distribution change_duration = ClippedNormal{5.8, 1.4, 3.0, 9.0};           // Toledo, Zohar 2007
   Distribution lateral_acceleration = ClippedNormal{2.7, 0.4, 1.8, 4.0};      // own
   Distribution time_margin = ClippedNormal{0.5, 0.15, 0.2, 1.0};              // fitted: HCM, exh. 20-17
-  Distribution stop_sign_margin = ClippedNormal{3.0, 0.5, 1.5, 4.5};          // fitted: HCM, exh. 20-17
+  Distribution minor_road_margin = ClippedNormal{3.0, 0.5, 1.5, 4.5};         // fitted: HCM, exh. 20-17
   Distribution reaction = ClippedNormal{0.8, 0.2, 0.4, 1.2};                  // Gates et al. 2007
   Distribution rolling_speed = ClippedNormal{2.4, 0.4, 0.0, 3.4};             // fitted: HCM, exh. 20-18
   Distribution signal_braking = ClippedNormal{3.6, 0.3, 3.0, 4.5};            // Gates et al. 2007
@@ -50,7 +50,7 @@ struct Population {
         parameter("change_duration", &P::change_duration, "s", {}, "of a lane change"),
         parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", {}, "highest in bends"),
         parameter("time_margin", &P::time_margin, "s", {}, "between two vehicles at one place in a junction"),
-        parameter("stop_sign_margin", &P::stop_sign_margin, "s", {}, "more for those that come from a stop sign"),
+        parameter("minor_road_margin", &P::minor_road_margin, "s", {}, "more for those that come from a minor road"),
         parameter("reaction", &P::reaction, "s", {}, "to lights"),
         parameter("rolling_speed", &P::rolling_speed, "m/s", {}, "that counts as a stop at stop signs"),
         parameter("signal_braking", &P::signal_braking, "m/s^2", {}, "up to which they stop at yellow"),
@@ -75,7 +75,7 @@ struct Population {
     check_draws(change_duration, {0.5, 30}, "change_duration", "s", where);
     check_draws(lateral_acceleration, {0.1, 50}, "lateral_acceleration", "m/s^2", where);
     check_draws(time_margin, {0, 20}, "time_margin", "s", where);
-    check_draws(stop_sign_margin, {0, 20}, "stop_sign_margin", "s", where);
+    check_draws(minor_road_margin, {0, 20}, "minor_road_margin", "s", where);
     check_draws(reaction, {0, 10}, "reaction", "s", where);
     check_draws(rolling_speed, {0, 10}, "rolling_speed", "m/s", where);
     check_draws(signal_braking, {0.1, 20}, "signal_braking", "m/s^2", where);
@@ -100,7 +100,7 @@ struct Population {
     one.others_headway = others_headway;
     one.lateral_acceleration = lateral_acceleration(random);
     one.time_margin = time_margin(random);
-    one.stop_sign_margin = stop_sign_margin(random);
+    one.minor_road_margin = minor_road_margin(random);
     one.reaction = reaction(random);
     one.rolling_speed = rolling_speed(random);
     one.signal_braking = signal_braking(random);

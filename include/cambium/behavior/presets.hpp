@@ -113,7 +113,7 @@ struct Temperament {
   double speed_factor = 1.0;          ///< `SpeedLimit::factor` [-]
   double time_margin = 0.5;           ///< `Conflicts::time_margin` [s]
   double jerk = 2.5;                  ///< `Driver::jerk` [m/s^3]
-  double stop_sign_margin = 3.0;      ///< `Conflicts::stop_sign_margin` [s]
+  double minor_road_margin = 3.0;     ///< `Conflicts::minor_road_margin` [s]
   double reaction = 0.8;              ///< `Signals::reaction` [s]
   double rolling_speed = 0.0;         ///< `Signals::rolling_speed` [m/s]
 
@@ -136,7 +136,7 @@ struct Temperament {
       driver.template heed<SpeedLimit>().factor = speed_factor;
     if constexpr (Heeding<Heeds...>::template contains<Conflicts>) {
       driver.template heed<Conflicts>().time_margin = time_margin;
-      driver.template heed<Conflicts>().stop_sign_margin = stop_sign_margin;
+      driver.template heed<Conflicts>().minor_road_margin = minor_road_margin;
     }
     return driver;
   }
@@ -191,7 +191,7 @@ template <class Driver>
                      .merging_headway = 2.0,
                      .speed_factor = 0.95,
                      .time_margin = 2.0,
-                     .stop_sign_margin = 4.0}
+                     .minor_road_margin = 4.0}
       .of(Driver{});
 }
 /// A driver of usual temperament: the parameters of `Temperament{}`.
@@ -212,7 +212,7 @@ template <class Driver>
                      .late_at_red = 1.0,
                      .speed_factor = 1.1,
                      .time_margin = 0.3,
-                     .stop_sign_margin = 2.0,
+                     .minor_road_margin = 2.0,
                      .rolling_speed = 3.0}
       .of(Driver{});
 }

@@ -98,9 +98,9 @@ inline constexpr DriverText driver_text<Idm, KeepLane, SpeedLimit, Bends, Signal
     "rules of the road (StVO sections 8 and 9); prediction: own"};
 template <>
 inline constexpr DriverText
-    driver_text<Idm, ChangeLanes<MobilRule<>>, SpeedLimit, Bends, Signals, Pedestrians, Conflicts>{
+    driver_text<Acc, ChangeLanes<MobilRule<>>, SpeedLimit, Bends, Signals, Pedestrians, Conflicts>{
         "urban_driver",
-        "IDM; changes lanes by MOBIL, obeys limits, slows down for bends, stops for lights, signs and pedestrians, and "
+        "ACC; changes lanes by MOBIL, obeys limits, slows down for bends, stops for lights, signs and pedestrians, and "
         "gives way at junctions",
         "see intersection and mobil"};
 

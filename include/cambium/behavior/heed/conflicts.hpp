@@ -56,7 +56,7 @@ struct Conflicts {
   bool keep_clear = true;
   double stop_margin = 1.0;
   double safe_deceleration = 3.0;
-  double stop_sign_margin = 3.0;
+  double minor_road_margin = 3.0;
 
   static constexpr bool heeds_conflicts = true;  ///< agents must not exceed the shapes of the map's conflicts
   static constexpr char const* name = "conflicts";
@@ -80,8 +80,8 @@ struct Conflicts {
         parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to a line where it waits"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
                   "by which it can stop before a conflict until that is free"),
-        parameter("stop_sign_margin", &P::stop_sign_margin, "s", Range{0, 20},
-                  "more before one that goes first, for a driver that comes from a stop sign"));
+        parameter("minor_road_margin", &P::minor_road_margin, "s", Range{0, 20},
+                  "more before one that goes first, for a driver that comes from a minor road"));
   }
 
   struct Memory {
@@ -373,7 +373,7 @@ struct Conflicts {
     auto const& [user, at, reach, behind_slow, place, earliest] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at, own_way = zone.begin - own.s;
-    bool const is_in = way <= 0.0, own_is_in = own_way <= -detail::over_line,
+    bool const is_in = way < -detail::over_line, own_is_in = own_way <= -detail::over_line,
                splits = conflict.kind == map::OverlapKind::split;
     bool const may_lead = conflict.kind != map::OverlapKind::crossing && (is_in || splits);
     if (own.is_settled && !may_lead && !own.notes_standing) return Claim::free;
@@ -463,7 +463,7 @@ struct Conflicts {
     double const impatience = std::clamp((own.waited - own.patience) / 30.0, 0.0, 1.0);
     double const behind = std::max(0.0, time_margin - impatience);
     double const before =
-        std::max(0.0, time_margin + (conflict.yields_after_stop ? stop_sign_margin : 0.0) - impatience);
+        std::max(0.0, time_margin + (conflict.from_minor_road ? minor_road_margin : 0.0) - impatience);
     double const soonest =
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.desired_speed));
     Window const theirs{

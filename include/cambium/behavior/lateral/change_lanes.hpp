@@ -419,11 +419,13 @@ struct ChangeLanes {
     if (change.target == at.corridor) {
       add_leader(view, limits, leader, true);
       add_stop(limits, distance_to_stop(view, at));
-      // While the body extends over the border, the leader there counts, too.
+      // While the body extends over the border, or still swings out to it, the leader there counts, too.
+      constexpr double soon = 6.0;  // [m]
       auto const sides = corridor.widths_at(at.s, at.segment);
-      auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
-                          : view.shape().right - at.lateral > sides.right ? piece.right
-                                                                          : none<CorridorId>;
+      double const swing = soon * at.heading_error;
+      auto const beside = at.lateral + std::max(0.0, swing) + view.shape().left > sides.left      ? piece.left
+                          : view.shape().right - at.lateral + std::max(0.0, -swing) > sides.right ? piece.right
+                                                                                                  : none<CorridorId>;
       if (beside == none<CorridorId>) return limits;
       auto const other = view.ahead(view.place(beside));
       if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))

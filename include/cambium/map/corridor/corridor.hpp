@@ -131,7 +131,7 @@ struct Conflict {
   OverlapKind kind = OverlapKind::crossing;
   RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
   bool is_signed = false;                       ///< priorities or signs say who goes first, or both have priority
-  bool yields_after_stop = false;               ///< this corridor's traffic yields, and has a stop sign
+  bool from_minor_road = false;                 ///< this corridor's traffic yields to a street, by priorities or signs
   ConflictZones zones;                          ///< that of two large ones holds all others and is not empty
   /// The section that it is in, by the size of the corridor's vehicle and whether large vehicles are among the others.
   std::array<std::array<ConflictSection, 2>, 2> section;

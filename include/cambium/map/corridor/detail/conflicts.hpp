@@ -88,7 +88,7 @@ class ConflictFinder {
     auto const by_sign = signed_right_of_way(map_, piece.lane, overlap);
     auto const signs = signs_before(map_, map_.lane(piece.lane));
     conflict.is_signed = by_sign.has_value() || signs.rank > 0;
-    conflict.yields_after_stop = signs.stops && by_sign == RightOfWay::yields;
+    conflict.from_minor_road = by_sign == RightOfWay::yields && (signs.stops || comes_from_street(overlap.other));
     double const begin = position(overlap.begin), end = position(overlap.end);
     conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
     if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
@@ -276,6 +276,18 @@ class ConflictFinder {
     auto const& hull = conflict.hull();
     double const view = conflict.kind == OverlapKind::split ? 0.0 : view_along(other);
     conflict.ways = ways_through(map_, other, hull.other_begin - view, hull.other_begin, hull.other_end);
+  }
+
+  /// Whether a lane's traffic comes from a road with traffic both ways, unlike in a roundabout.
+  [[nodiscard]] bool comes_from_street(LaneId id) const {
+    auto const ends = ends_of(map_.lane(id), false);
+    return std::any_of(ends.begin(), ends.end(), [&](LaneId end) {
+      auto const& one = map_.lane(end);
+      auto const& lanes = map_.road(one.road).sections[one.section].lanes;
+      return std::any_of(lanes.begin(), lanes.end(), [&](RoadLane const& lane) {
+        return is_valid(lane.id) && map_.lane(lane.id).drivable() && map_.lane(lane.id).along_road != one.along_road;
+      });
+    });
   }
 
   /// How far before a conflict traffic on a lane counts [m]: `MapOptions::merge_view`, and on fast roads as far as one
