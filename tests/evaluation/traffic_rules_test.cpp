@@ -20,6 +20,7 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/drivers.hpp"
+#include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -863,7 +864,9 @@ TEST_CASE("urban drivers keep the zip merge rule almost always") {
   std::size_t broken = 0, asked = 0;
   for (std::uint32_t number = 0; number < support::runs(20); ++number) {
     auto const scenario = with_behaviors<Sim>(site.sample(7, number), [](auto const& spec) -> AnyDriver {
-      return UrbanDriver{.law = std::get<IdmClassic>(spec.behavior.given()).law};
+      UrbanDriver driver;
+      presets::follow_as(std::get<IdmClassic>(spec.behavior.given()).law, driver.law);
+      return driver;
     });
     auto found = violations(scenario.make_world(), {rules.front(), occurs}, 40);
     broken += found["zip_merge"];
