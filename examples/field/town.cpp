@@ -237,9 +237,10 @@ std::vector<Row> errors(std::uint64_t seed) {
     }
   }
   auto const of = " of human drivers, in " + std::to_string(std::lround(kilometres)) + " km";
-  auto const touch = ", impact above 2 m/s (" + std::to_string(std::lround(touched)) + " touched)";
+  std::string const source =
+      "Kusano et al. 2024; ours: impact above 2 m/s (" + std::to_string(std::lround(touched)) + " touched)";
   double const millions = kilometres / 1e6;
-  return {{"crashed vehicles" + of + touch, 1.5, 5.0, "1/Mkm", "Kusano et al. 2024", crashed / millions, true},
+  return {{"crashed vehicles" + of, 1.5, 5.0, "1/Mkm", source, crashed / millions, true},
           {"hard braking (0.5 g)" + of, 50, 100, "1/Mkm", "100-Car, SHRP2; unverified", near / millions, true}};
 }
 
