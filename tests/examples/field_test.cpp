@@ -49,6 +49,7 @@ TEST_CASE("traffic stays in people's bands, but for the rows named here") {
       {"wave of those who start in a jam", -22, -15},
       {"correlation time of that noise", 0.7, 2.0},
       {"of these below 1 s", 0.03, 0.1},
+      {"saturation flow of a lane at green", 1730, 1950},
       {"red running on a busy approach, an hour", 0.2, 3.5},
       {"red running on a busy approach, a cycle", 0.005, 0.09},
       {"two-way stop, left from major: capacity in shares of people's", 0.75, 1.15},
