@@ -43,6 +43,7 @@ TEST_CASE("traffic stays in people's bands, but for the rows named here") {
       {"speed at 1500 cars an hour", 100, 115},
       {"density at capacity", 22, 31},
       {"change of that mean from 900 to 2000 cars an hour", 0.0, 0.2},
+      {"speed in shares of the limit, mean", 0.97, 1.07},
       {"speed of cars without a limit, mean", 110, 125},
       {"of these above 130 km/h", 0.12, 0.35},
       {"capacity drop at a lane drop", 0.0, 0.2},
