@@ -14,18 +14,24 @@
 
 namespace field {
 
-Sim::AgentSpec People::draw(cb::RandomStream& random) const {
-  bool const is_truck = cb::uniform01(random) < truck_share;
-  auto const driver = (is_truck ? trucks : cars).draw(random).of(Driver{});
-  return {.speed = driver.law.desired_speed,
+namespace {
+
+template <class Behavior>
+Sim::AgentSpec draw_as(Behavior const& behavior, People const& people, cb::RandomStream& random) {
+  bool const is_truck = cb::uniform01(random) < people.truck_share;
+  auto const one = (is_truck ? people.trucks : people.cars).draw(random);
+  return {.speed = one.idm.desired_speed,
           .shape = is_truck ? cb::geometry::truck() : cb::geometry::car(),
-          .behavior = driver};
+          .behavior = one.of(behavior)};
 }
 
-Human with_errors(Driver const& driver) {
-  Human human{.nominal = driver, .attentive = 3.2, .looks_away = 0.65};
-  human.reaction_time = std::min(human.reaction_time, 0.5 * driver.law.time_headway);  // who is close pays attention
-  return human;
+}  // namespace
+
+Sim::AgentSpec People::draw(cb::RandomStream& random) const { return draw_as(Driver{}, *this, random); }
+
+Sim::AgentSpec People::draw_erring(cb::RandomStream& random) const {
+  // It looks away from the road for 17 % of the time; 5 % of these glances last longer than 2 s.
+  return draw_as(Human{.attentive = 3.2, .looks_away = 0.65}, *this, random);
 }
 
 std::shared_ptr<cb::Map const> straight_road(double length, std::size_t lanes, double limit, double drop) {

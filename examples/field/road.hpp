@@ -31,13 +31,10 @@ struct People {
   cb::Population cars = cb::presets::motorway_cars(), trucks = cb::presets::motorway_trucks();
   double truck_share = 0.0;
 
-  /// The next vehicle, at the speed that it desires.
+  /// The next vehicle, at the speed that it desires; without or with a human's errors.
   [[nodiscard]] Sim::AgentSpec draw(cb::RandomStream& random) const;
+  [[nodiscard]] Sim::AgentSpec draw_erring(cb::RandomStream& random) const;
 };
-
-/// The same driver with a human's errors, who looks away from the road for 17 % of the time, 5 % of these glances
-/// longer than 2 s.
-[[nodiscard]] Human with_errors(Driver const& driver);
 
 /// A straight road of `length` [m] with `lanes` lanes and a speed `limit` [m/s], infinite: none. Beyond `drop` [m], if
 /// that is above 0, the rightmost lane is missing.

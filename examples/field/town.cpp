@@ -206,8 +206,7 @@ std::vector<Row> errors(std::uint64_t seed) {
     std::unordered_map<cb::AgentId, Seen> seen;
     while (world.time() < duration) {
       for (auto const &entered : inflow.enter(world, [&](cb::TrafficSource const&source, cb::RandomStream&random) {
-             auto spec = town_people().draw(random);
-             spec.behavior = with_errors(std::get<Driver>(spec.behavior));
+             auto spec = town_people().draw_erring(random);
              spec.route = cb::random_route(*map, source.lane, random);
              return spec;
            }))

@@ -253,6 +253,55 @@ TEST_CASE_TEMPLATE("every driver stops once at a stop sign and goes on", Behavio
   CHECK(world.state(id).x >= 300.0);
 }
 
+TEST_CASE("a driver who rolls through stop signs slows down to its speed there, and does not stand") {
+  for (double const rolling : {0.0, 2.0}) {
+    cb::IdmClassic::Also<cb::Signals> driver{};
+    driver.heed<cb::Signals>().rolling_speed = rolling;
+    Traffic<cb::IdmClassic::Also<cb::Signals>> world(support::road_with_signal("206"));
+    auto const id = world.add({.position = {100, -1.75}, .speed = 13, .behavior = driver});
+    double slowest = 13.0;
+    for (int k = 0; k < 300 && world.state(id).x < 300.0; ++k) {
+      REQUIRE(world.step(0.1));
+      slowest = std::min(slowest, world.state(id).speed);
+    }
+    CHECK(world.state(id).x >= 300.0);
+    CHECK(slowest < rolling + 0.1);
+    CHECK(slowest > 0.5 * rolling - 0.01);
+  }
+}
+
+TEST_CASE("a driver responds to a light that turns yellow, and to green where it stands, after its reaction time") {
+  using Obeying = cb::IdmClassic::Also<cb::Signals>;
+  auto const map = support::road_with_signal("1000001");
+  cb::map::LightPlan const plan{
+      .cycle = 60.0, .green_begin = 30.0, .green_end = 62.0};  // yellow from 2 s, red from 5 s
+  CHECK(plan.shown_for(3.5) == doctest::Approx(1.5));
+  CHECK(plan.shown_for(6.0) == doctest::Approx(1.0));
+  CHECK(plan.shown_for(31.0) == doctest::Approx(1.0));
+  CHECK(plan.shown_for(61.0) == doctest::Approx(31.0));
+  CHECK(std::isinf(cb::map::LightPlan{.cycle = 60.0, .green_end = 60.0}.shown_for(7.0)));
+  CHECK(cb::map::LightPlan{}.shown_for(7.0) == 0.0);
+  double braked[2]{}, started[2]{};
+  for (int i = 0; i < 2; ++i) {
+    Obeying driver{.jerk = 1e6};
+    driver.heed<cb::Signals>().reaction = i;
+    Traffic<Obeying> world(map);
+    world.set_light(map->lights().front().id, plan);
+    auto const id = world.add({.position = {110, -1.75}, .speed = 15, .behavior = driver});  // 4 s from the line
+    while (world.time() < 45.0 && started[i] == 0.0) {
+      double const before = world.state(id).speed;
+      REQUIRE(world.step(0.05));
+      double const now = world.state(id).speed;
+      if (braked[i] == 0.0 && now < before - 0.02) braked[i] = world.time();
+      if (world.time() > 20.0 && now > cb::standing_speed) started[i] = world.time();
+    }
+  }
+  CHECK(braked[0] >= 2.0);
+  CHECK(braked[1] >= 3.0);
+  CHECK(started[0] < 30.3);
+  CHECK(started[1] - started[0] == doctest::Approx(1.0).epsilon(0.06));
+}
+
 TEST_CASE_TEMPLATE("every driver brakes comfortably and in time for a bend if the rules say so", Behavior, DRIVERS) {
   double const radius = 20.0;
   auto const map = road_with_bend(radius);

@@ -157,7 +157,8 @@ TEST_CASE("a human without imperfections does so among cyclists, and where it ob
     Noisy world(straight_road(1, 1000.0), {.seed = 3});
     cb::IdmClassic const exact{.law = {.desired_speed = 12.0}};
     Noisy::Behaviors::Any behavior = exact;
-    if (human) behavior = Human{.nominal = exact, .reaction_time = 0.0, .gap_error = 0.0, .rate_error = 0.0, .noise = 0.0};
+    if (human)
+      behavior = Human{.nominal = exact, .reaction_time = 0.0, .gap_error = 0.0, .rate_error = 0.0, .noise = 0.0};
     for (int i = 0; i < 8; ++i) {
       bool const cycles = i % 2 == 1;
       world.add({.position = {20.0 + 25.0 * i, cycles ? -3.0 : -1.75},

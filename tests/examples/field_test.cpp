@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "../../examples/field/gaps.hpp"
+#include "../support/scale.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
-#include "../support/scale.hpp"
 #include "program.hpp"
 
 using namespace program;

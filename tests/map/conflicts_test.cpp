@@ -221,3 +221,35 @@ TEST_CASE("where one waits for a section one is in nobody's way") {
   CHECK(sections > 100);
   CHECK(refuges > 0);
 }
+
+TEST_CASE("nobody comes to a conflict faster than the bends before it permit") {
+  for (auto const& [name, map] : junction_maps())
+    for (auto const& [lane, passage] : passages(*map))
+      for (auto const* const conflict : passage.conflicts())
+        for (auto const& way : conflict->ways) {
+          CAPTURE(name);
+          double const length = way.index_end - way.index_begin;
+          CHECK(way.time_from_begin >= way.time_from_end);
+          CHECK(way.time_from_begin <= way.time_from_end + length / 1.5);  // the sharpest bends of 0.75 m
+          CHECK(way.time_from(way.begin) == doctest::Approx(way.time_from_begin));
+          CHECK(way.time_from(way.begin + length) == doctest::Approx(way.time_from_end));
+        }
+}
+
+// Signs or priorities of a street with traffic both ways; a roundabout's ring is no such street.
+TEST_CASE("who comes from a minor road waits for longer gaps, who enters a roundabout does not") {
+  auto const count = [](char const* name) {
+    auto const map = support::own_map(name);
+    std::size_t minor = 0, yields = 0;
+    for (auto const& [lane, passage] : passages(*map))
+      for (auto const& conflict : passage.corridor->conflicts) {
+        minor += conflict.from_minor_road;
+        yields += conflict.right_of_way == map::RightOfWay::yields;
+        if (conflict.from_minor_road) CHECK(conflict.right_of_way == map::RightOfWay::yields);
+      }
+    REQUIRE(yields > 0);
+    return minor;
+  };
+  CHECK(count("intersection_3way.xodr") > 0);
+  CHECK(count("roundabout.xodr") == 0);
+}

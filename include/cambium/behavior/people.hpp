@@ -13,8 +13,8 @@ namespace cambium {
 /// are car drivers on motorways. "Fitted" are parameters that nobody observes as such: they were chosen so that traffic
 /// comes into the bands of the sources named, see the table in behavior/README.md.
 struct Population {
-  Distribution desired_speed = ClippedNormal{34.5, 7.5, 27.0, 56.0};          // Heidemann 1987; BASt 2010-14
-  Distribution speed_factor = ClippedNormal{1.06, 0.1, 0.8, 1.4};             // DfT 2019
+  Distribution desired_speed = ClippedNormal{34.5, 7.5, 27.0, 56.0};          // fitted: Heidemann 1987; BASt 2010-14
+  Distribution speed_factor = ClippedNormal{1.06, 0.1, 0.8, 1.4};             // fitted: DfT 2019
   Distribution time_headway = ClippedNormal{0.97, 0.35, 0.5, 2.5};            // fitted: Wasielewski 1979; HCM
   Distribution minimum_gap = ClippedNormal{2.0, 0.5, 1.0, 4.0};               // Treiber, Kesting 2013; spread: own
   Distribution maximum_acceleration = ClippedNormal{1.2, 0.25, 0.7, 2.0};     // Treiber, Kesting: MovSim's ACC cars

@@ -31,7 +31,8 @@ namespace cambium {
 ///
 /// - Outside, a driver waits for all who have entered a section that conflicts with its own, unless they leave the zone
 ///   in time, and for those who go first (`detail::goes_first`) and would be in the zone less than `time_margin` before
-///   or after it. It enters when it waits for nobody and there is room behind the section.
+///   or after it, on a minor road less than `minor_road_margin` more after it. It enters when it waits for nobody and
+///   there is room behind the section.
 /// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
 ///   remembers who these are.
 ///
@@ -382,8 +383,9 @@ struct Conflicts {
       double const there = at + conflict.shift, gap = there - user.rear - own.front;
       if (there > own.s && (gap > 0.0 || own_is_in)) {
         auto leader = detail::constraint_beside<typename Limits::Response>(view, user);
-        // One that pulls away counts where it is after a headway.
-        leader.gap = gap + limits.law().time_headway * std::max(0.0, user.speed - own.speed);
+        leader.gap = gap;
+        // One ahead that pulls away counts where it is after a headway.
+        if (gap > 0.0) leader.gap += limits.law().time_headway * std::max(0.0, user.speed - own.speed);
         limits.heed(leader);
       }
       if (gap > 0.0 || splits) return Claim::free;
@@ -446,6 +448,7 @@ struct Conflicts {
       end = std::min(end, zone.begin + view.shape().front + own.minimum_gap + user.rear - conflict.shift);
     if (!has_entered || user.speed < standing_speed) return Claim::blocked;
     double const gap = std::max(0.0, end - other.at), latest = arrival(own, own_way) - 0.5 * time_margin;
+    // Cars pull away faster than lorries.
     double const gains = detail::is_large(view, view.shape(user)) ? detail::pull_away : 1.5 * detail::pull_away;
     if (time_to_cover(gap, user.speed, gains, infinite) >= latest) return Claim::blocked;
     // It leaves in time even if it brakes.

@@ -39,16 +39,16 @@ namespace cambium {
 /// - The driver knows in advance what does not move (bends, limits, lines to stop at, the lane's end): it never
 ///   accelerates more than it would alone on the road, without delay. In the paper the free road has the delay, too;
 ///   the two differ only on a free road.
-/// - Where ways cross (conflicts in junctions) it decides without delay: who gives way looks, and moves slowly.
+/// - Where ways cross in a junction it decides without delay: drivers who give way look, and move slowly.
 /// - Inattention: at random times the driver looks away and keeps its last decision, so that its reaction time grows by
 ///   as long as it looks away (frozen controls: Yang, Peng 2010, "Development of an errorable car-following driver
-///   model"). It goes on steering. It looks away only where it expects not to have to brake for 2 s, nor while it
-///   creeps, and looks back within 0.4 s on average once it should brake. Both are ours: drivers who look away at any
-///   time collide ten times as often.
-/// - Noise of the pedals: a third such process is added to the acceleration, but not so that it drives over a line
-/// (Zhang, Sun 2022, "Bayesian calibration of
-///   the intelligent driver model": 0.21 m/s^2, correlated over 1.3 s, for drivers on highD's motorways), the less the
-///   slower it drives below 5 m/s.
+///   model"). It goes on steering. It looks away only while it expects not to brake for 2 s and does not creep, and
+///   looks back, after 0.4 s on average, when it should brake. Both rules are ours: without them drivers collide about
+///   ten times as often.
+/// - Noise of the pedals: a third such process is added to the acceleration, but never drives it over a line (Zhang,
+/// Sun
+///   2022, "Bayesian calibration of the intelligent driver model": 0.21 m/s^2, correlated over 1.3 s, for drivers on
+///   highD's motorways), the less the slower it drives below 5 m/s.
 ///
 /// Without reaction time, errors, inattention and noise it drives as the nominal behaviour, to the last bit. The
 /// behaviour must keep the vehicle in lanes; it may change them, on the errors of the moment. Reaction times about as

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "cambium/core/described.hpp"
@@ -71,10 +72,11 @@ struct LightPlan {
     return passed < green + yellow ? LightColor::yellow : LightColor::red;
   }
 
-  /// How long it has shown its colour at `time` [s]; 0 for a light that is off. O(1).
+  /// How long it has shown its colour at `time` [s]; infinite if it is always green, 0 for a light that is off. O(1).
   [[nodiscard]] double shown_for(double time) const {
     if (!(cycle > 0.0)) return 0.0;
-    double const passed = since_green(time), green = std::min(cycle, green_end - green_begin);
+    double const passed = since_green(time), green = green_end - green_begin;
+    if (green >= cycle) return std::numeric_limits<double>::infinity();
     return passed - (passed < green ? 0.0 : passed < green + yellow ? green : green + yellow);
   }
 

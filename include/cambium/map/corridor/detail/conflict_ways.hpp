@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
@@ -19,9 +21,12 @@ struct FastestArrival {
   /// Goes back from position `to` to `from` [m] of a lane's path. O(length).
   void go_back(geometry::Line const& path, double from, double to) {
     constexpr double step = 4.0, lateral = 3.0, braking = 4.0;  // [m], [m/s^2]
+    if (!(to > from)) return;
+    std::uint32_t hint = 0;
+    double heading = path.pose(to, hint).heading;
     for (double end = to; end > from;) {
       double const begin = std::max(from, end - step), length = end - begin;
-      double const turn = std::abs(path.pose(end).heading - path.pose(begin).heading);
+      double const before = std::exchange(heading, path.pose(begin, hint).heading), turn = std::abs(before - heading);
       double const curvature = turn / std::max(length, 0.5 * step);
       speed = std::min(50.0, std::sqrt(speed * speed + 2.0 * braking * length));
       if (speed * speed * curvature > lateral) speed = std::sqrt(lateral / curvature);
