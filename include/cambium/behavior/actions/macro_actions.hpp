@@ -219,9 +219,11 @@ struct BasicMacroActions {
     Limits<Law> limits(law, speed, heeds.desired_speed(law, view, speed), heeds.merging(view, Merging::counts));
     if (keeps_gap) {
       KeepLane{}.heed_next(view, limits);
-      if (change.active() && change.target != view.place().corridor)
-        if (auto const next = view.ahead(view.place(change.target), {.merging = limits.merging}))
-          limits.heed(detail::constraint_beside<typename Limits<Law>::Response>(view, *next));
+      if (change.active() && change.target != view.place().corridor) {
+        auto const there = view.place(change.target);
+        if (auto const next = view.ahead(there, {.merging = limits.merging}))
+          limits.heed(detail::constraint_of<typename Limits<Law>::Response>(view, *next, there));
+      }
     }
     heeds.heed(view, memory.heeds, limits, dt);
     auto motion = gap_alone ? limits.motion(dt) : wanted(view, action, speed, dt);

@@ -97,7 +97,7 @@ struct Yielding {
       if (!ends && !joins) continue;
       auto const front = view.ahead(there);
       if (!front || !(front->gap > 0.0)) continue;
-      auto const constraint = detail::constraint_beside<typename Limits::Response>(view, *front);
+      auto const constraint = detail::constraint_of<typename Limits::Response>(view, *front, there);
       if (-limits.response()(constraint) <= limits.law().comfortable_deceleration) limits.heed(constraint);
     }
   }

@@ -46,9 +46,11 @@ struct LaneChoice {
     return changing.is_safe(view, limits, option, changing.safe_deceleration);
   }
 
-  /// The acceleration behind a road user in a lane beside, or on a free road [m/s^2].
-  [[nodiscard]] double response(std::optional<RoadUser> const& front) const {
-    return limits.response()(front ? detail::constraint_beside<typename Limits::Response>(view, *front) : Constraint{});
+  /// The acceleration behind the leader in a lane beside, or on a free road [m/s^2].
+  [[nodiscard]] double response(LaneOption const& option) const {
+    using Response = typename Limits::Response;
+    return limits.response()(option.front ? detail::constraint_of<Response>(view, *option.front, option.place)
+                                          : Constraint{});
   }
 };
 
@@ -221,20 +223,20 @@ struct ChangeLanes {
                                               double deceleration) const {
     using Response = typename Limits::Response;
     auto const& law = limits.response();
-    auto const front_is_safe = [&](RoadUser const& n) {
-      return n.gap > safe_gap && law(detail::constraint_beside<Response>(view, n)) >= -deceleration;
+    auto const front_is_safe = [&](RoadUser const& n, map::LanePlace const& place) {
+      return n.gap > safe_gap && law(detail::constraint_of<Response>(view, n, place)) >= -deceleration;
     };
     auto const rear_is_safe = [&](RoadUser const& n) {
       return n.gap > safe_gap && (is_object(n) || law_of(n)(n.gap, law.speed()) >= -deceleration);
     };
-    if (option.front && !front_is_safe(*option.front)) return false;
+    if (option.front && !front_is_safe(*option.front, option.place)) return false;
     if (option.rear && !rear_is_safe(*option.rear)) return false;
     auto const& there = view.road().corridors[option.place.corridor].pieces[option.place.piece];
     auto const beyond = there.beside(option.left);
     if (beyond == none<CorridorId> || beyond == view.place().corridor) return true;
     auto const others_there = view.place(beyond);
     auto const front = view.ahead(others_there), rear = view.behind(others_there);
-    if (front && comes(view, *front, option, true) && !front_is_safe(*front)) return false;
+    if (front && comes(view, *front, option, true) && !front_is_safe(*front, others_there)) return false;
     return !(rear && comes(view, *rear, option, false) && !rear_is_safe(*rear));
   }
 
@@ -363,12 +365,13 @@ struct ChangeLanes {
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
 
-  /// Adds a leader in a lane that the vehicle stays in; before an object it leaves room to change.
+  /// Adds a leader in the lane of `place` that the vehicle stays in; before an object it leaves room to change.
   template <class View, class Limits>
-  void add_leader(View const& view, Limits& limits, std::optional<RoadUser> const& leader, bool has_side) const {
+  void add_leader(View const& view, Limits& limits, std::optional<RoadUser> const& leader, map::LanePlace const& place,
+                  bool has_side) const {
     if (!leader) return;
     double const room = is_object(*leader) && has_side ? detail::out_of_lane * course.least_length(view.shape()) : 0.0;
-    auto constraint = detail::constraint_beside<typename Limits::Response>(view, *leader);
+    auto constraint = detail::constraint_of<typename Limits::Response>(view, *leader, place);
     constraint.gap -= room;
     limits.heed(constraint);
   }
@@ -383,7 +386,7 @@ struct ChangeLanes {
       if ((leader && next.agent == leader->agent && next.object == leader->object) ||
           (leaves && next.speed < passed_below))
         return;
-      limits.heed(detail::constraint_beside<typename Limits::Response>(view, next));
+      limits.heed(detail::constraint_of<typename Limits::Response>(view, next));
     });
     if (auto const gap =
             keep.gap_to_wait_for(view, limits.merging, -limits.law().lowest_acceleration, limits.jerk_bound))
@@ -400,7 +403,7 @@ struct ChangeLanes {
   void heed_in_lane(View const& view, Limits& limits, std::optional<RoadUser> const& leader) const {
     auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
-    add_leader(view, limits, leader, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
+    add_leader(view, limits, leader, at, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
     add_stop(limits, distance_to_stop(view, at));
   }
 
@@ -417,7 +420,7 @@ struct ChangeLanes {
       return n.speed < passed_below && n.gap > until;
     };
     if (change.target == at.corridor) {
-      add_leader(view, limits, leader, true);
+      add_leader(view, limits, leader, at, true);
       add_stop(limits, distance_to_stop(view, at));
       // While the body extends over the border, or still swings out to it, the leader there counts, too.
       constexpr double soon = 6.0;  // [m]
@@ -427,17 +430,18 @@ struct ChangeLanes {
                           : view.shape().right - at.lateral + std::max(0.0, -swing) > sides.right ? piece.right
                                                                                                   : none<CorridorId>;
       if (beside == none<CorridorId>) return limits;
-      auto const other = view.ahead(view.place(beside));
+      auto const there = view.place(beside);
+      auto const other = view.ahead(there);
       if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))
-        limits.heed(detail::constraint_beside<typename Limits::Response>(view, *other));
+        limits.heed(detail::constraint_of<typename Limits::Response>(view, *other, there));
       return limits;
     }
     if (leader && !is_passed(*leader, left - around))
-      limits.heed(detail::constraint_beside<typename Limits::Response>(view, *leader));
+      limits.heed(detail::constraint_of<typename Limits::Response>(view, *leader));
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
     if (until_end < 0.6 * left) limits.heed({until_end - view.shape().front, 0.0});
     auto const there = view.place(change.target);
-    add_leader(view, limits, view.ahead(there), true);
+    add_leader(view, limits, view.ahead(there), there, true);
     // The vehicle may enter the neighbouring lane even if that ends soon.
     add_stop(limits, std::max(distance_to_stop(view, there), 0.6 * left + limits.law().minimum_gap + 1.0));
     return limits;

@@ -124,7 +124,7 @@ struct MobilRule {
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.ahead(option.place);
       if (urge > 0.0 && !goes_on) adapt_to(now, option.front);
-      situation.own_after = now.response(option.front);
+      situation.own_after = now.response(option);
       if (is_prejudged && others + situation.own_after + pull <= best) continue;
       option.rear = view.behind(option.place);
       double const worth = worth_of(now, situation, option, inwards) + pull;

@@ -19,25 +19,31 @@ struct Constraint {
 
 namespace detail {
 
-/// A neighbour as a constraint, with its acceleration if `Law` asks for it.
+/// A neighbour in the lane of `place`, where the own vehicle is or would be, as a constraint, with its acceleration if
+/// `Law` asks for it. Before a merge the law gets a gap that includes a share of the way there (`gap_before_merge`),
+/// which the driver uses up. Hence a leader counts as that much slower, but not as one that is closed in on; and as one
+/// that brakes, the harder the nearer the merge is, because a law that heeds that would take small gaps as harmless.
 template <class Law, class View>
-[[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user) {
+[[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user, map::LanePlace const& place) {
   Constraint constraint{user.gap, user.speed, 0.0};
-  if constexpr (Law::asks_acceleration)
-    if (is_valid(user.agent)) {
-      constraint.acceleration = view.acceleration(user);
-      double const gap = user.s - user.rear - view.place().s - view.shape().front;
-      // Before a merge the gap has to open, whatever the leader's acceleration; near it, the law must not rely on that.
-      constexpr double soon = 3.0, hardest = -1e3;  // [s], [m/s^2]
-      double const opens = user.gap - gap;
-      if (opens > 0.1)
-        constraint.acceleration =
-            std::min(constraint.acceleration, opens < opening_share * soon * view.state().speed ? hardest : -1.0);
-    }
+  if (!is_valid(user.agent)) return constraint;
+  double const ahead = user.gap - (user.s - user.rear - place.s - view.shape().front), speed = view.state().speed;
+  constexpr double soon = 3.0;  // [s]
+  bool const has_to_open = ahead > 0.1;
+  double const vanishes = opening_share * speed, nearness = soon * vanishes / ahead;
+  if (has_to_open) constraint.speed = std::min(user.speed, std::max(speed, user.speed - vanishes));
+  if constexpr (Law::asks_acceleration) {
+    constraint.acceleration = view.acceleration(user);
+    if (has_to_open) constraint.acceleration = std::min(constraint.acceleration, -nearness * nearness);
+  }
   return constraint;
 }
+template <class Law, class View>
+[[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user) {
+  return constraint_of<Law>(view, user, view.place());
+}
 
-/// The same in a lane beside, which has another lane coordinate.
+/// A road user in another lane, from which the own vehicle has `user.gap` as it is.
 template <class Law, class View>
 [[nodiscard]] Constraint constraint_beside(View const& view, RoadUser const& user) {
   Constraint constraint{user.gap, user.speed, 0.0};
