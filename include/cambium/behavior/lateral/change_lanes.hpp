@@ -20,6 +20,14 @@
 
 namespace cambium {
 
+namespace detail {
+/// How a driver who changes lanes looks along its own lane and those beside: whoever merges there counts, even for one
+/// that opens no gap, but in junctions the right of way decides (`Merging::by_rule`).
+[[nodiscard]] inline Look look_beside(Merging counted) {
+  return {.merging = counted == Merging::by_rule ? counted : Merging::counts};
+}
+}  // namespace detail
+
 /// A driver that keeps its lane, as seen by the rule that decides on lane changes.
 template <class View, class Limits, class Changing>
 struct LaneChoice {
@@ -36,10 +44,12 @@ struct LaneChoice {
     auto const side = view.corridor().pieces[view.place().piece].beside(left);
     if (side == none<CorridorId> || !changing.marks_permit(view, left)) return std::nullopt;
     LaneOption option{view.place(side), left, {}, {}};
-    option.front = view.ahead(option.place);
-    option.rear = view.behind(option.place);
+    option.front = view.ahead(option.place, look());
+    option.rear = view.behind(option.place, look());
     return option;
   }
+
+  [[nodiscard]] Look look() const { return detail::look_beside(limits.merging); }  ///< along these lanes
 
   /// Whether nobody has to brake hard if it changes there now.
   [[nodiscard]] bool is_safe(LaneOption const& option) const {
@@ -231,11 +241,16 @@ struct ChangeLanes {
     };
     if (option.front && !front_is_safe(*option.front, option.place)) return false;
     if (option.rear && !rear_is_safe(*option.rear)) return false;
+    if (!view.road().corridors[option.place.corridor].feeders.empty()) {  // one that merges may be the nearer one
+      auto const follower = view.behind(option.place, {.merging = Merging::ignored});
+      if (follower && !rear_is_safe(*follower)) return false;
+    }
     auto const& there = view.road().corridors[option.place.corridor].pieces[option.place.piece];
     auto const beyond = there.beside(option.left);
     if (beyond == none<CorridorId> || beyond == view.place().corridor) return true;
     auto const others_there = view.place(beyond);
-    auto const front = view.ahead(others_there), rear = view.behind(others_there);
+    auto const look = detail::look_beside(limits.merging);
+    auto const front = view.ahead(others_there, look), rear = view.behind(others_there, look);
     if (front && comes(view, *front, option, true) && !front_is_safe(*front, others_there)) return false;
     return !(rear && comes(view, *rear, option, false) && !rear_is_safe(*rear));
   }
@@ -307,8 +322,8 @@ struct ChangeLanes {
     auto const& piece = view.corridor().pieces[at.piece];
     LaneOption option{view.place(change.target), change.target == piece.left, {}, {}};
     if (!option.left && change.target != piece.right) return true;  // no longer beside: the lanes have merged
-    option.front = view.ahead(option.place);
-    option.rear = view.behind(option.place);
+    option.front = view.ahead(option.place, detail::look_beside(limits.merging));
+    option.rear = view.behind(option.place, detail::look_beside(limits.merging));
     return is_safe(view, limits, option, abort_deceleration);
   }
 
@@ -422,18 +437,19 @@ struct ChangeLanes {
     if (change.target == at.corridor) {
       add_leader(view, limits, leader, at, true);
       add_stop(limits, distance_to_stop(view, at));
-      // While the body extends over the border, or still swings out to it, the leader there counts, too.
-      constexpr double soon = 6.0;  // [m]
+      // Where the body extends over a border, or its front end still swings out to it, the leader there counts, too.
+      constexpr double soon = 3.0;  // [m]
       auto const sides = corridor.widths_at(at.s, at.segment);
-      double const swing = soon * at.heading_error;
-      auto const beside = at.lateral + std::max(0.0, swing) + view.shape().left > sides.left      ? piece.left
-                          : view.shape().right - at.lateral + std::max(0.0, -swing) > sides.right ? piece.right
-                                                                                                  : none<CorridorId>;
-      if (beside == none<CorridorId>) return limits;
-      auto const there = view.place(beside);
-      auto const other = view.ahead(there);
-      if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))
-        limits.heed(detail::constraint_of<typename Limits::Response>(view, *other, there));
+      double const swing = (view.shape().front + soon) * at.heading_error;
+      auto const heed_beside = [&](CorridorId beside) {
+        if (beside == none<CorridorId>) return;
+        auto const there = view.place(beside);
+        auto const other = view.ahead(there, detail::look_beside(limits.merging));
+        if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))
+          limits.heed(detail::constraint_of<typename Limits::Response>(view, *other, there));
+      };
+      if (at.lateral + std::max(0.0, swing) + view.shape().left > sides.left) heed_beside(piece.left);
+      if (view.shape().right - at.lateral + std::max(0.0, -swing) > sides.right) heed_beside(piece.right);
       return limits;
     }
     if (leader && !is_passed(*leader, left - around))
@@ -441,7 +457,7 @@ struct ChangeLanes {
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
     if (until_end < 0.6 * left) limits.heed({until_end - view.shape().front, 0.0});
     auto const there = view.place(change.target);
-    add_leader(view, limits, view.ahead(there), there, true);
+    add_leader(view, limits, view.ahead(there, detail::look_beside(limits.merging)), there, true);
     // The vehicle may enter the neighbouring lane even if that ends soon.
     add_stop(limits, std::max(distance_to_stop(view, there), 0.6 * left + limits.law().minimum_gap + 1.0));
     return limits;

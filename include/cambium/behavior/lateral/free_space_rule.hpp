@@ -63,10 +63,10 @@ struct FreeSpaceRule {
       if (urge < 0.0 ||
           (urge == 0.0 && remaining < minimum_remaining + now.changing.there_and_back(now.limits.response().speed())))
         continue;
-      option.front = view.ahead(option.place);
+      option.front = view.ahead(option.place, now.look());
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;
-      option.rear = view.behind(option.place);
+      option.rear = view.behind(option.place, now.look());
       if (!space(view, option) || !now.is_safe(option)) continue;
       best = ahead;
       target = side;

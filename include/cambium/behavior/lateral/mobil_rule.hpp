@@ -98,7 +98,7 @@ struct MobilRule {
     auto const& piece = view.corridor().pieces[view.place().piece];
     if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return none<CorridorId>;
     MobilSituation situation{.own = now.limits.acceleration()};
-    if (auto const rear = view.behind())
+    if (auto const rear = view.behind(now.look()))
       std::tie(situation.old_follower, situation.old_follower_after) = followers_view(now, rear, now.leader);
     // The incentive without the own acceleration after the change: a side that cannot become worthwhile is skipped.
     double const others =
@@ -122,11 +122,11 @@ struct MobilRule {
         continue;
       if (urge <= 0.0 && remaining < route_horizon && is_way_out(view, side, end)) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
-      option.front = view.ahead(option.place);
+      option.front = view.ahead(option.place, now.look());
       if (urge > 0.0 && !goes_on) adapt_to(now, option.front);
       situation.own_after = now.response(option);
       if (is_prejudged && others + situation.own_after + pull <= best) continue;
-      option.rear = view.behind(option.place);
+      option.rear = view.behind(option.place, now.look());
       double const worth = worth_of(now, situation, option, inwards) + pull;
       if (!(worth > best) || !now.is_safe(option) || !filters(view, option)) continue;
       best = worth;
