@@ -376,3 +376,30 @@ TEST_CASE("a merging vehicle never hides an object, whatever the ids") {
   CHECK(acceleration(cb::AgentId{1}) == acceleration(cb::AgentId{9}));
   CHECK(acceleration(cb::AgentId{1}) < -4.0);
 }
+
+TEST_CASE("a vehicle that merges never hides a faster follower from a driver who wants to change lanes") {
+  MergingRoad const merge;
+  auto const changes = [&](bool has_follower, bool has_ramp_vehicle) {
+    Sim world(merge.site.map);
+    auto const add_left_of_through = [&](double before, double speed, auto const& behavior) {
+      auto const pose = merge.corridor(merge.through).center.pose(merge.through.merge_at - before);
+      Sim::AgentSpec const spec{.position = cb::geometry::to_map(pose, {0.0, 3.75}),
+                                .heading = pose.heading,
+                                .speed = speed,
+                                .behavior = behavior};
+      return world.add(spec);
+    };
+    auto const id = add_left_of_through(60.0, 6.0, mobil(20.0));
+    add_left_of_through(40.0, 3.0, cb::ConstantAcceleration{});
+    if (has_follower)
+      merge.add(world, merge.through, 85.0,
+                {.speed = 25.0, .behavior = cb::IdmClassic{.law = {.desired_speed = 25.0}}});
+    if (has_ramp_vehicle) merge.add(world, merge.ramp, 48.0, {.speed = 0.0, .behavior = cb::ConstantAcceleration{}});
+    REQUIRE(world.step(0.2));
+    return change_of(world, world.slot_of(id)).active();
+  };
+  CHECK(changes(false, false));
+  CHECK(changes(false, true));
+  CHECK_FALSE(changes(true, false));
+  CHECK_FALSE(changes(true, true));
+}
