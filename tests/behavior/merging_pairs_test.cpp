@@ -12,8 +12,8 @@
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/wrap/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
-#include "cambium/evaluation/collision.hpp"
 #include "cambium/dynamics/single_track.hpp"
+#include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"
 

@@ -20,9 +20,10 @@ struct Constraint {
 namespace detail {
 
 /// A neighbour in the lane of `place`, where the own vehicle is or would be, as a constraint, with its acceleration if
-/// `Law` asks for it. Before a merge the law gets a gap that includes a share of the way there (`gap_before_merge`),
-/// which the driver uses up. Hence a leader counts as that much slower, but not as one that is closed in on; and as one
-/// that brakes, the harder the nearer the merge is, because a law that heeds that would take small gaps as harmless.
+/// `Law` asks for it. Before a merge the gap includes a share of the way there (`gap_before_merge`), which shrinks as
+/// the own vehicle drives. So a leader that pulls away counts as that much slower, but never as slower than the own
+/// vehicle. For a law that asks for accelerations it brakes, the harder the nearer the merge is: otherwise such a law
+/// takes a small gap for harmless.
 template <class Law, class View>
 [[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user, map::LanePlace const& place) {
   Constraint constraint{user.gap, user.speed, 0.0};

@@ -45,10 +45,9 @@ namespace cambium {
 ///   model"). It goes on steering. It looks away only while it expects not to brake for 2 s and does not creep, and
 ///   looks back, after 0.4 s on average, when it should brake. Both rules are ours: without them drivers collide about
 ///   ten times as often.
-/// - Noise of the pedals: a third such process is added to the acceleration, but never drives it over a line (Zhang,
-/// Sun
-///   2022, "Bayesian calibration of the intelligent driver model": 0.21 m/s^2, correlated over 1.3 s, for drivers on
-///   highD's motorways), the less the slower it drives below 5 m/s.
+/// - Noise of the pedals: a third such process is added to the acceleration, but never drives it over a line; below
+///   5 m/s it is the less the slower it drives. 0.21 m/s^2, correlated over 1.3 s, are those of drivers on highD's
+///   motorways (Zhang, Sun 2022, "Bayesian calibration of the intelligent driver model").
 ///
 /// Without reaction time, errors, inattention and noise it drives as the nominal behaviour, to the last bit. The
 /// behaviour must keep the vehicle in lanes; it may change them, on the errors of the moment. Reaction times about as
