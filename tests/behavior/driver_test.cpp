@@ -184,6 +184,14 @@ TEST_CASE("the acceleration changes no faster than the jerk permits, but faster 
   CHECK(last.speed == 0.0);
   CHECK(last.distance >= 0.0);
   CHECK(last.distance < 0.05 * dt);
+  // Smoothly it would still drive at 9.9 m/s: 16.3 m to stop at 3 m/s^2, after 1 m.
+  for (auto const& [distance, expected] : {std::pair{17.6, 0.3 - 1.3}, {17.2, -1.5}}) {
+    limits.jerk_bound = {.jerk = 2.0, .acceleration = -0.8};
+    limits.place_to_wait = {distance, 3.0};
+    CHECK(acceleration(-1.5) == doctest::Approx(expected));
+    limits.jerk_bound = {.jerk = 2.0, .acceleration = 0.5};
+    CHECK(acceleration(1.5) == doctest::Approx(0.7));
+  }
 }
 
 TEST_CASE_TEMPLATE("no desired speed is below 0.1 m/s; NaN is reported", Law, Idm, ImprovedIdm, Acc, Gipps) {

@@ -150,8 +150,11 @@ class Limits {
         bounded_acceleration(a, v, law_->comfortable_deceleration, law_->lowest_acceleration, jerk_bound, dt);
     if (!(smooth < a) && !(smooth > a)) return wanted;
     double const end = v + smooth * dt;
-    if (end > 0.0) return {0.5 * (v + end) * dt, end};
-    return {smooth < 0.0 ? v * v / (-2.0 * smooth) : 0.0, 0.0};
+    auto const smoothly = end > 0.0 ? LongitudinalMotion<double>{0.5 * (v + end) * dt, end}
+                                    : LongitudinalMotion<double>{smooth < 0.0 ? v * v / (-2.0 * smooth) : 0.0, 0.0};
+    auto const& [place, deceleration] = place_to_wait;
+    bool const rolls_over = smooth > a && !can_stop(smoothly.speed, place - smoothly.distance, deceleration);
+    return rolls_over ? wanted : smoothly;
   }
 
   Merging merging = Merging::counts;  ///< how road users count that merge into the lane
@@ -159,6 +162,9 @@ class Limits {
   double highest_speed = infinite;    ///< in the bends within the braking distance [m/s]
   bool is_at_light = false;           ///< it stands before a light that stops it
   JerkBound jerk_bound{};             ///< of the driver while it need not hurry
+  struct {
+    double distance = infinite, deceleration = 1.0;  ///< [m, m/s^2]
+  } place_to_wait{};  ///< it brakes harder than `jerk_bound` permits rather than be unable to stop there
 
  private:
   [[nodiscard]] bool is_urgent() const {

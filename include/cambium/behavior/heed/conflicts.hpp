@@ -127,7 +127,7 @@ struct Conflicts {
     heed_conflicts(view, own, limits, dt);
     remember(memory, own, limits.is_at_light, dt);
     limits.bound(own.wait.bound);
-    if (own.stops_at - own.s < air) limits.jerk_bound = {};  // it must not roll over its place
+    limits.place_to_wait = {own.stops_at + detail::over_line - own.s, detail::judged_deceleration};
   }
 
  private:
