@@ -243,8 +243,7 @@ struct Reach {
 };
 
 /// The lanes beside `somebody`'s that an agent reaches into: where its corners are beyond its lane's border. Nearer
-/// than 0.3 m to its path it follows that, unless it is wider than 1.5 m to a side or stands aslant. False where it has
-/// left its lane.
+/// than 0.3 m to its path it follows that, unless it reaches more than 1.4 m aside. False where it has left its lane.
 bool add_reached(cb::Map const& map, cb::State const& state, cb::geometry::Shape const& shape, Somebody somebody,
                  std::vector<Somebody>& all) {
   cb::geometry::Pose const at{state.x, state.y, state.heading};
@@ -252,7 +251,9 @@ bool add_reached(cb::Map const& map, cb::State const& state, cb::geometry::Shape
   auto const foot = lane.path.project(at.position());
   double const along = lane.path.pose(foot.s).heading;
   double const aslant = std::abs(std::remainder(at.heading - along, 2 * cb::geometry::pi));
-  if (std::abs(foot.lateral) <= 0.3 && shape.left <= 1.5 && shape.right <= 1.5 && aslant <= 0.05) return true;
+  double const aside =
+      std::abs(foot.lateral) + std::max(shape.left, shape.right) + aslant * std::max(shape.front, shape.rear);
+  if (std::abs(foot.lateral) <= 0.3 && aside <= 1.4) return true;
   Reach const across(shape, at.heading, along);
   auto const room = lane.widths_at(somebody.s);
   if (foot.lateral + across.left <= -room.right || foot.lateral - across.right >= room.left) return false;

@@ -269,6 +269,23 @@ TEST_CASE("an agent that reaches over its lane's border is seen in both lanes") 
   }
 }
 
+TEST_CASE("in a narrow lane a bus a little off the middle, or slightly aslant, is seen beside its lane") {
+  Sim world(support::map_of(
+      {.id = "1", .line = cb::map::lay_from({}, {{300.0}}), .sections = {{.right = cb::map::equal_lanes(2, 2.85)}}}));
+  auto const bus = world.add(
+      {.position = {100, -4.275}, .speed = 5, .shape = cb::geometry::bus(), .behavior = cb::ConstantAcceleration{}});
+  auto const car = world.add({.position = {40, -1.425}, .speed = 10});
+  for (auto const& [offset, heading, reaches] :
+       {std::tuple{0.0, 0.0, false}, {0.1, 0.0, false}, {0.2, 0.0, true}, {0.0, 0.04, true}}) {
+    CAPTURE(offset);
+    CAPTURE(heading);
+    world.set_state(bus, {.x = 100, .y = -4.275 + offset, .heading = heading, .speed = 5});
+    auto const front = world.observe(car).ahead();
+    CHECK(front.has_value() == reaches);
+    if (front) CHECK(front->agent == bus);
+  }
+}
+
 TEST_CASE("states set from outside place the agent anew") {
   Sim world(straight_road(2));
   auto const id = world.add({.position = {10, -5.25}, .speed = 10});

@@ -141,9 +141,9 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
   return best;
 }
 
-/// An agent on its path counts as within its lane up to this half width [m] and heading error [rad]. Lanes whose paths
-/// are closer than that overlap, and the index covers overlaps anyway.
-inline constexpr double usual_half_width = 1.5, usual_heading_error = 0.05;
+/// A body that reaches up to this far [m] to the side of its path counts as within its lane. Lanes whose paths are
+/// closer than that overlap, and the index covers overlaps anyway.
+inline constexpr double usual_reach = 1.4;
 
 /// The first lane coordinate beyond all lanes, where the ranges of free corridors begin [m].
 [[nodiscard]] inline double lane_coordinate_end(Map const& map) {
@@ -181,9 +181,10 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
       entry.position = nowhere;
       return entry;
     }
-    bool const is_usual = std::max(agent.shape.left, agent.shape.right) <= usual_half_width &&
-                          std::abs(record.lane.heading_error) <= usual_heading_error;
-    if (is_usual && std::abs(record.lane.lateral) <= on_path && record.lane.index < lanes_end) return entry;
+    auto const& [front, rear, left, right] = agent.shape;
+    double const lateral = std::abs(record.lane.lateral);
+    double const reach = lateral + std::max(left, right) + std::max(front, rear) * std::abs(record.lane.heading_error);
+    if (reach <= usual_reach && lateral <= on_path && record.lane.index < lanes_end) return entry;
     geometry::Pose const pose{record.state.x, record.state.y, record.state.heading};
     if (!straddle(map, {agent.shape, *agent.road, record.lane, pose, record.state.speed}, entry, reaching))
       entry.position = nowhere;
