@@ -321,6 +321,23 @@ TEST_CASE("a driver stops before the end of a lane without its goal, and changes
   }
 }
 
+TEST_CASE("nobody passes in a lane that leaves its route and from which the marks forbid the way back") {
+  using Permission = cb::map::opendrive::LaneChangePermission;
+  auto const passes = [](Permission permission) {
+    cb::map::SectionPlan section{.right = cb::map::equal_lanes(2)};
+    section.right[0].mark = cb::map::make_mark("broken", permission);
+    auto const map = support::map_of({.id = "1", .line = cb::map::lay_from({}, {{2000.0}}), .sections = {section}});
+    Sim world(map);
+    auto const id = add(world, 2, 50.0, 20.0, mobil(30.0), goal_on(*map, 2, 1990.0));
+    add(world, 2, 100.0, 10.0, cb::ConstantAcceleration{});
+    drive_safely(world, 20);
+    return world.frame().agents[world.slot_of(id)].lane.corridor == cb::CorridorId{0};
+  };
+  CHECK(passes(Permission::both));
+  CHECK(!passes(Permission::increase));  // lane ids increase to the left
+  CHECK(!passes(Permission::none));
+}
+
 TEST_CASE("from rest on an empty road a driver reaches the lane of its goal from every lane") {
   for (int const goal : {1, 4})
     for (int lane = 1; lane <= 4; ++lane) {

@@ -42,7 +42,7 @@ struct LaneChoice {
   /// forbid a change.
   [[nodiscard]] std::optional<LaneOption> beside(bool left) const {
     auto const side = view.corridor().pieces[view.place().piece].beside(left);
-    if (side == none<CorridorId> || !changing.marks_permit(view, left)) return std::nullopt;
+    if (side == none<CorridorId> || !changing.marks_permit(view, view.place(), left)) return std::nullopt;
     LaneOption option{view.place(side), left, {}, {}};
     option.front = view.ahead(option.place, look());
     option.rear = view.behind(option.place, look());
@@ -54,6 +54,14 @@ struct LaneChoice {
   /// Whether nobody has to brake hard if it changes there now.
   [[nodiscard]] bool is_safe(LaneOption const& option) const {
     return changing.is_safe(view, limits, option, changing.safe_deceleration);
+  }
+
+  /// Whether it may come back from the lane of `option`, of which `remaining` [m] are left, after which at least
+  /// `minimum` [m] must be left; always if that lane does not end.
+  [[nodiscard]] bool may_return(LaneOption const& option, double remaining, double minimum) const {
+    return remaining == std::numeric_limits<double>::infinity() ||
+           (remaining >= minimum + changing.there_and_back(limits.response().speed()) &&
+            changing.marks_permit(view, option.place, !option.left));
   }
 
   /// The acceleration behind the leader in a lane beside, or on a free road [m/s^2].
@@ -258,12 +266,11 @@ struct ChangeLanes {
   /// Distance [m] of two changes at `speed` [m/s] and the rest between them.
   [[nodiscard]] double there_and_back(double speed) const { return speed * (2.0 * course.duration + rest); }
 
-  /// Whether the road marks permit a change or are ignored.
+  /// Whether the road marks permit a change from `at`, or are ignored.
   template <class View>
-  [[nodiscard]] bool marks_permit(View const& view, bool left) const {
+  [[nodiscard]] bool marks_permit(View const& view, map::LanePlace const& at, bool left) const {
     if (!heed_marks) return true;
-    auto const& at = view.place();
-    auto const& piece = view.corridor().pieces[at.piece];
+    auto const& piece = view.road().corridors[at.corridor].pieces[at.piece];
     auto const& lane = view.map().lane(piece.lane);
     double const s = at.s + piece.lane_offset;
     return left ? lane.may_change_left(s) : lane.may_change_right(s);

@@ -56,13 +56,11 @@ struct FreeSpaceRule {
     auto target = none<CorridorId>;
     for (bool const left : {true, false}) {
       auto const side = piece.beside(left);
-      if (side == none<CorridorId> || !now.changing.marks_permit(view, left)) continue;
+      if (side == none<CorridorId> || !now.changing.marks_permit(view, view.place(), left)) continue;
       double const urge = left ? urgency.left : urgency.right;
       LaneOption option{view.place(side), left, {}, {}};
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
-      if (urge < 0.0 ||
-          (urge == 0.0 && remaining < minimum_remaining + now.changing.there_and_back(now.limits.response().speed())))
-        continue;
+      if (urge < 0.0 || (urge == 0.0 && !now.may_return(option, remaining, minimum_remaining))) continue;
       option.front = view.ahead(option.place, now.look());
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;

@@ -112,14 +112,13 @@ struct MobilRule {
     auto target = none<CorridorId>;
     for (bool const left : {true, false}) {
       auto const side = piece.beside(left);
-      if (side == none<CorridorId> || !now.changing.marks_permit(view, left)) continue;
+      if (side == none<CorridorId> || !now.changing.marks_permit(view, view.place(), left)) continue;
       bool const inwards = left == inner_is_left;
       LaneOption option{view.place(side), left, {}, {}};
       double const end = lane_end(view, side, option.place.piece), remaining = end - option.place.s;
       double const urge =
           !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
-      if (urge <= 0.0 && remaining < minimum_remaining + now.changing.there_and_back(now.limits.response().speed()))
-        continue;
+      if (urge <= 0.0 && !now.may_return(option, remaining, minimum_remaining)) continue;
       if (urge <= 0.0 && remaining < route_horizon && is_way_out(view, side, end)) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.ahead(option.place, now.look());

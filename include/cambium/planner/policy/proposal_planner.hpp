@@ -204,7 +204,7 @@ struct ProposalPlanner {
     if (is_valid(under_way)) propose_change(under_way, view.place(under_way).lateral < 0.0);
     for (double const offset : offsets) propose_at(offset, none<CorridorId>, false);
     for (bool const left : {true, false})
-      if (piece.beside(left) != under_way && driver.lateral.marks_permit(view, left))
+      if (piece.beside(left) != under_way && driver.lateral.marks_permit(view, view.place(), left))
         propose_change(piece.beside(left), left);
     return choose(workspace);
   }
