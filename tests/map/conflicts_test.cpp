@@ -14,7 +14,9 @@
 #include "../support/maps.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/collision.hpp"
+#include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/map.hpp"
 
@@ -164,6 +166,34 @@ TEST_CASE("where smaller bodies touch at places apart within the zone of the lar
       }
   }
   CHECK(places > 0);
+}
+
+TEST_CASE("where lanes cross before they end in one, the right of way decides who follows whom") {
+  // Two lanes turn sharply, from the left and from the right, into one.
+  map::MapBuilder builder;
+  constexpr double quarter = 0.5 * geometry::pi;
+  auto const turn = [](double radius, double sign) {
+    return std::vector<map::Geometry>(
+        map::lay_to({0.0, 0.0, quarter}, {{40.0}, {radius * quarter, sign / radius, sign / radius}}));
+  };
+  auto const lane = map::equal_lanes(1, 2.5);
+  builder.add_road({.id = "left", .line = turn(0.75, 1.0), .sections = {{.right = lane}}});
+  builder.add_road({.id = "right", .line = turn(3.25, -1.0), .sections = {{.right = lane}}});
+  builder.add_road({.id = "out", .line = map::lay_from({0.0, 0.0, quarter}, {{60.0}}), .sections = {{.right = lane}}});
+  for (char const* from : {"left", "right"})
+    builder.connect({from, map::opendrive::ContactPoint::end}, {"out", map::opendrive::ContactPoint::start});
+  auto const map = builder.build();
+  auto const left = map->find_lane("left", 1.0, -1), right = map->find_lane("right", 1.0, -1);
+  for (auto const& [own, other] : {std::pair(left, right), {right, left}}) {
+    auto const road = map::build_road_corridor(*map, map::straight_route(*map, own));
+    auto const& corridor = road->corridors[road->main];
+    CHECK(std::ranges::any_of(corridor.conflicts, [&, other = other](map::Conflict const& conflict) {
+      return conflict.other == other && conflict.kind == map::OverlapKind::crossing;
+    }));
+    CHECK(std::ranges::any_of(corridor.feeders, [&, other = other](map::Feeder const& feeder) {
+      return feeder.lane == other && feeder.is_still_to_merge() && feeder.by_rule;
+    }));
+  }
 }
 
 TEST_CASE("conflicts are in the order in which one has to wait for them, and know how far those before reach") {

@@ -189,6 +189,27 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
   return static_cast<CorridorId>(best);
 }
 
+/// Whether the right of way decides who goes first where feeders merge into the corridor at `meet` [m]: there is a
+/// conflict with a lane that merges there, or, where lanes cross before they end in one, with each of them.
+[[nodiscard]] inline bool merges_by_rule(LaneCorridor const& corridor, double meet) {
+  constexpr double near = 1e-3;  // [m]
+  auto const& conflicts = corridor.conflicts;
+  if (std::any_of(conflicts.begin(), conflicts.end(),
+                  [&](Conflict const& conflict) { return std::abs(conflict.meet - meet) < near; }))
+    return true;
+  auto const ends_there = [&](Feeder const& feeder) {
+    return std::abs(feeder.free_until - meet) < near && std::abs(feeder.end - meet) < near;
+  };
+  auto const conflicts_with = [&](Feeder const& feeder) {
+    return std::any_of(conflicts.begin(), conflicts.end(),
+                       [&](Conflict const& conflict) { return conflict.other == feeder.lane; });
+  };
+  auto const& feeders = corridor.feeders;
+  return std::any_of(feeders.begin(), feeders.end(), ends_there) &&
+         std::none_of(feeders.begin(), feeders.end(),
+                      [&](Feeder const& feeder) { return ends_there(feeder) && !conflicts_with(feeder); });
+}
+
 /// The road corridor along `route`, see `build_road_corridor`.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> make_road_corridor(Map const& map,
                                                                             std::vector<LaneId> const& route) {
@@ -217,10 +238,7 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
     FeederFinder(map, corridor).find();
     corridor.conflicts = ConflictFinder(map, corridor).find();
     corridor.signals = corridor_signals(map, corridor);
-    for (auto& feeder : corridor.feeders)
-      feeder.by_rule = std::any_of(corridor.conflicts.begin(), corridor.conflicts.end(), [&](Conflict const& conflict) {
-        return std::abs(conflict.meet - feeder.free_until) < 1e-3;
-      });
+    for (auto& feeder : corridor.feeders) feeder.by_rule = merges_by_rule(corridor, feeder.free_until);
     road->corridors.push_back(std::move(corridor));
   }
   return road;
