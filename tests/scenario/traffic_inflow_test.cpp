@@ -103,6 +103,25 @@ TEST_CASE("vehicles enter as often as a source demands, whatever the step, and t
         doctest::Approx(2478.44).epsilon(1e-5));  // on every platform
 }
 
+TEST_CASE("a random route that comes round ends outside of junctions, where nobody crosses or merges") {
+  auto const map = support::own_map("roundabout.xodr");
+  int round = 0;
+  for (auto const& source : find_sources(*map))
+    for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+      RandomStream random(seed, 0, 0);
+      auto const route = random_route(*map, source.lane, random, 3000.0);
+      auto const& last = map->lane(route.lanes.back());
+      double length = 0.0;
+      for (auto const lane : route.lanes) length += map->lane(lane).length();
+      CHECK(route.length == doctest::Approx(length));
+      if (last.successors.empty()) continue;
+      ++round;
+      CHECK(!map->in_junction(last.id));
+      CHECK(last.overlaps.empty());
+    }
+  CHECK(round > 0);
+}
+
 TEST_CASE("nobody enters into a queue that has grown back to the source, and they wait there") {
   auto const road = support::straight_road(1, 200.0);
   Sim world(road, {});

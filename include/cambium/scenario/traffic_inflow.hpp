@@ -43,8 +43,9 @@ struct TrafficSource {
 /// are at least 2.5 m wide at their begin, and lead on for 30 m. Empty on a closed map. O(lanes).
 [[nodiscard]] std::vector<TrafficSource> find_sources(Map const& map);
 
-/// A random route that begins in lane `from`. It ends where the map ends, where it would come round, or, outside of
-/// junctions, after `longest` [m]. Throws `WorldError` if the map has no such lane. O(lanes of the route).
+/// A random route that begins in lane `from`. It ends where the map ends, after `longest` [m] outside of junctions, or
+/// before it comes round, where nobody crosses or merges. Throws `WorldError` if the map has no such lane. O(lanes of
+/// the route).
 [[nodiscard]] map::Route random_route(Map const& map, LaneId from, RandomStream& random, double longest = 400.0);
 
 /// Whether a vehicle of `shape` on the route stays out of the lanes beside it, outside of junctions. Traffic in those
