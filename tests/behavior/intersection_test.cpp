@@ -448,3 +448,50 @@ TEST_CASE("a driver keeps the junction clear if there is no room behind it, unle
     CHECK(entered == !keep_clear);
   }
 }
+
+TEST_CASE("nobody who follows into a queue behind a junction stands in it, however long he has waited") {
+  Crossing const crossing;
+  auto const route = crossing.route(1, 0);
+  std::size_t behind = 1;
+  while (!is_in_junction(*crossing.map, route.lanes[behind])) ++behind;
+  while (is_in_junction(*crossing.map, route.lanes[behind])) ++behind;
+  auto const& exit = crossing.map->lane(route.lanes[behind]);
+  for (bool const with_truck : {false, true}) {
+    int far = 0;
+    for (double s = 2.0; s < 20.0; s += 1.0) {
+      Sim world(crossing.map);
+      auto const stands = Intersection{.law = {.desired_speed = 0.1, .maximum_acceleration = 0.01}};
+      enter(world, exit, s, {.behavior = stands});
+      if (with_truck) enter(world, exit, 80.0, {.shape = geometry::truck(), .behavior = stands});
+      std::vector<AgentId> const ids{add_before(world, route, 18.0, 6.0), add_before(world, route, 30.0, 6.0)};
+      for (int step = 0; step < 300; ++step) REQUIRE(world.step(0.2));
+      for (auto const id : ids) {
+        auto const view = world.observe(id);
+        if (view.state().speed > 1.0) continue;
+        double const rear = view.place().s - view.shape().rear, front = view.place().s + view.shape().front;
+        far += view.place().s > view.corridor().conflicts.front().hull().begin;
+        CAPTURE(s);
+        CAPTURE(with_truck);
+        for (auto const& conflict : view.corridor().conflicts) {
+          auto const& zone = conflict.zones[0][with_truck];
+          if (conflict.kind != map::OverlapKind::split && !zone.empty())
+            CHECK((front < zone.begin || rear > zone.end - 1.0));
+        }
+      }
+    }
+    CHECK(far > 3);
+  }
+}
+
+TEST_CASE("a driver who has to yield goes before one who stands as long as it does, whatever the ids") {
+  Crossing crossing{crossing_with({{"1", "306"}, {"2", "205"}, {"3", "306"}, {"4", "205"}})};
+  for (std::uint32_t const id : {1, 9}) {
+    Sim world(crossing.map);
+    auto const broken_down = add_before(world, crossing.route(1, 0), 6.0, 0.0, AgentId{5});
+    world.set_behavior(broken_down, Intersection{.law = {.desired_speed = 0.1, .maximum_acceleration = 0.01}});
+    auto const north = add_before(world, crossing.route(2, 0), 30.0, 6.0, AgentId{id});
+    auto const times = times_through(world, {north}, 40.0);
+    REQUIRE(times[0]);
+    CHECK(*times[0] < 25.0);
+  }
+}

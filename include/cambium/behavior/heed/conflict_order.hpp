@@ -58,6 +58,9 @@ inline constexpr double judged_deceleration = 3.0;
 /// The highest acceleration that drivers reckon with in others, in a step [m/s^2].
 inline constexpr double hardest_start = 3.5;
 
+/// How far beyond the vehicle before it a driver looks for the end of a queue [m].
+inline constexpr double queue_view = 60.0;
+
 /// Whether a vehicle has entered the section before which it waits at `place` [m]: it is beyond that, or can no longer
 /// stop there.
 [[nodiscard]] inline bool has_entered(double s, double speed, double place) {
@@ -193,7 +196,8 @@ template <class View>
 ///   the same step as another that is nearer to its own.
 /// - First come, first served: there, a driver that stands at its line goes before one that stopped there later or has
 ///   yet to stop. With right before left alone, four drivers would wait for each other again and again.
-/// - Patience: a driver that has waited too long for a standing vehicle goes.
+/// - Patience: a driver that has waited too long for a standing vehicle goes; sooner before one that has the right of
+///   way and has stood all the while, for that cannot go.
 /// - A standing driver lets a vehicle go that has just started close to its line.
 /// - Right of way by map, signs and rules (`map::right_of_way`).
 /// - Without right of way, the nearer vehicle goes; at about equal distance, the one with the smaller id.
@@ -213,7 +217,7 @@ template <class View>
   if (is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red) return true;
   bool const stands = user.speed < standing_speed, own_stands = own.speed < standing_speed;
   bool const is_smaller = view.id() < user.agent, is_patient = own.waited < own.patience;
-  bool const in_order = is_by_arrival(view, conflict);
+  bool const in_order = is_by_arrival(view, conflict), is_decided = conflict.right_of_way != map::RightOfWay::equal;
   if (in_order && enters_first(other, own, is_smaller)) return false;
   bool const by_arrival = in_order && !is_patient;
   double const to_line = zone.other_line - other.at - user.front;
@@ -225,11 +229,11 @@ template <class View>
     // Two drivers must not lose their patience together. Of two that wait for each other, the smaller id goes long
     // before the other; the golden ratio spreads the ids of a ring of waiting drivers.
     double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
-    double const turn = spread * (share - std::floor(share)) + (is_smaller ? 0.0 : later);  // [s]
+    bool const is_sooner = is_smaller || (is_decided && own.before->holds(key));
+    double const turn = spread * (share - std::floor(share)) + (is_sooner ? 0.0 : later);  // [s]
     if (own.waited >= own.patience + turn + (arrival == Arrival::earlier ? for_order : 0.0)) return true;
   }
   if (arrival == Arrival::earlier && to_line < short_way) return false;
-  bool const is_decided = conflict.right_of_way != map::RightOfWay::equal;
   bool const at_green = is_decided && lets_go(view, conflict.light) && lets_go(view, conflict.other_light);
   if (own_stands && !stands && !at_green && user.speed < starting_speed && to_line < short_way) return false;
   if (is_decided) return conflict.right_of_way == map::RightOfWay::first;

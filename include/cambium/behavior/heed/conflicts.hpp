@@ -32,7 +32,7 @@ namespace cambium {
 /// - Outside, a driver waits for all who have entered a section that conflicts with its own, unless they leave the zone
 ///   in time, and for those who go first (`detail::goes_first`) and would be in the zone less than `time_margin` before
 ///   or after it, on a minor road less than `minor_road_margin` more after it. It enters when it waits for nobody and
-///   there is room behind the section.
+///   there is room behind the section, where all before it have closed up to the end of a queue.
 /// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
 ///   remembers who these are.
 ///
@@ -213,14 +213,15 @@ struct Conflicts {
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, other, own, view, dt);
     }
-    bool const has_waited = own.waited > own.patience + longest_wait;  // maybe for the end of its own queue
-    if (own.is_far || !keep_clear || has_waited || !is_in_queue(limits.constraint())) return;
+    if (own.is_far || !keep_clear) return;
+    double const end_of_road = front_in_queue(view, own, limits.constraint());
+    if (end_of_road == infinite) return;
     for (auto at = first; at != end; ++at) {
-      auto const& zone = at->zones[own.is_large][0];
+      auto const& zone = at->zones[own.is_large][own.may_meet_large];
       come_to(view, *at, own);
       if (!zone.empty() && own.section != map::ConflictSection::none && !own.has_entered &&
-          is_full_behind(view, zone, own, limits.constraint()))
-        obey(Claim::yield, *at, 0, own, view, dt);
+          is_full_behind(view, zone, own, end_of_road))
+        obey(Claim::yield, *at, own.may_meet_large, own, view, dt);
     }
   }
 
@@ -506,13 +507,30 @@ struct Conflicts {
     return std::clamp(behind, zone.begin, zone.end);
   }
 
-  /// Whether the room behind the conflict is too small for the vehicle, as in a queue.
+  /// How far the vehicle's front end may come, up to the vehicle before it, once all before it have closed up to the
+  /// next one that stands or creeps: corridor position [m]; infinite where nobody does. O(vehicles on the way there).
   template <class View>
-  [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
-                                    Constraint const& leader) const {
+  [[nodiscard]] static double front_in_queue(View const& view, Own const& own, Constraint const& leader) {
+    if (is_in_queue(leader)) return own.front + leader.gap;
+    double closed_up = 0.0;  // [m] of those that move
+    auto at = view.place();
+    for (int vehicles = 0; vehicles < 16; ++vehicles) {
+      auto const next = view.ahead(at, {.merging = Merging::by_rule, .distance = detail::queue_view});
+      if (!next) break;
+      if (next->speed <= detail::starting_speed) return next->s - next->rear - closed_up;
+      closed_up += next->length() + own.minimum_gap;
+      at.s = next->s + 0.01;
+      at.piece = view.corridor().piece_at(at.s, at.piece);
+    }
+    return infinite;
+  }
+
+  /// Whether the room behind the conflict, up to `front` [m], is too small for the vehicle.
+  template <class View>
+  [[nodiscard]] static bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
+                                           double front) {
     double const end = zone.end - view.shape().rear;  // end of the conflict for a rear end
-    double const room = own.front + leader.gap - end;
-    return room < view.shape().length() + own.minimum_gap;
+    return front - end < view.shape().length() + own.minimum_gap;
   }
 };
 }  // namespace cambium
