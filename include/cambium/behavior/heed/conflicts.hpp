@@ -32,15 +32,17 @@ namespace cambium {
 /// - Outside, a driver waits for all who have entered a section that conflicts with its own, unless they leave the zone
 ///   in time, and for those who go first (`detail::goes_first`) and would be in the zone less than `time_margin` before
 ///   or after it, on a minor road less than `minor_road_margin` more after it. It enters when it waits for nobody and
-///   there is room behind the section, where all before it have closed up to the end of a queue.
+///   there is room behind the section once all before it have closed up to the end of a queue. Behind a merge at which
+///   it goes first it needs none: the others would only stand behind it.
 /// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
 ///   remembers who these are.
 ///
 /// So nobody waits forever. Order all vehicles inside by the step in which they entered, then by their ids. Each waits
 /// only for earlier ones, or drives behind a leader, which entered before it or is behind the section, where there was
-/// room. So the earliest waits for nobody and leaves, and then the next one is the earliest. Nor do those outside wait
-/// for each other in a ring: of those who stand, each loses its patience at a time of its own. One whom all others keep
-/// outside, for they do not stand, goes before those who can stop with ease after 80 s more.
+/// room, or behind a merge. So the earliest waits for nobody and leaves, and then the next one is the earliest. Queues
+/// do not close to a ring, for those who have to yield never fill it. Nor do those outside wait for each other in a
+/// ring: of those who stand, each loses its patience at a time of its own. One whom all others keep outside, for they
+/// do not stand, goes before those who can stop with ease after 80 s more.
 ///
 /// And nobody collides whom all see and who heeds this: a driver enters only if it can stop before a zone until those
 /// before it have left that, and those after it can stop before theirs, for they were outside. A collision remains
@@ -217,6 +219,7 @@ struct Conflicts {
     double const end_of_road = front_in_queue(view, own, limits.constraint());
     if (end_of_road == infinite) return;
     for (auto at = first; at != end; ++at) {
+      if (at->kind == map::OverlapKind::merge && at->right_of_way == map::RightOfWay::first) continue;
       auto const& zone = at->zones[own.is_large][own.may_meet_large];
       come_to(view, *at, own);
       if (!zone.empty() && own.section != map::ConflictSection::none && !own.has_entered &&
