@@ -165,6 +165,24 @@ TEST_CASE("nobody brakes for a pedestrian who waits, walks along the kerb, walks
   CHECK_FALSE(drives_freely({100.0, 8.5}, {100.0, -10.0}, 1.3));
 }
 
+TEST_CASE_TEMPLATE("a driver goes on past pedestrians who stand beside it, and still follows the next vehicle", Driver,
+                   cb::IdmClassic, cb::Mobil, cb::UrbanDriver) {
+  Traffic<Driver, cb::ConstantAcceleration> world(road);
+  auto const truck =
+      world.add({.position = {20.0, -1.75}, .heading = 0.0, .shape = cb::geometry::truck(), .behavior = Driver{}});
+  for (double const x : {23.0, 24.5}) {
+    std::vector<Point> const points{{x, -0.15}, {x, -10.0}};
+    world.add({.position = points.front(),
+               .shape = cb::geometry::pedestrian(),
+               .behavior = cb::ConstantAcceleration{},
+               .road = cb::map::build_free_corridor(world.map(), points)});
+  }
+  world.add({.position = {60.0, -1.75}, .heading = 0.0, .behavior = cb::ConstantAcceleration{}});
+  for (int i = 0; i < 200; ++i) REQUIRE(world.step(0.2));
+  CHECK(world.state(truck).x > 45.0);
+  CHECK(world.state(truck).x < 60.0 - 0.9 - 7.2);
+}
+
 TEST_CASE("a pedestrian and a driver do not wait for each other for good") {
   for (std::uint32_t seed = 0; seed < support::runs(20); ++seed) {
     CAPTURE(seed);

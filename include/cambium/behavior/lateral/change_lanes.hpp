@@ -177,7 +177,7 @@ struct ChangeLanes {
         "cambium::ChangeLanes<Rule>: the rule must be a struct with a name, parameters() and `template <class Choice> "
         "cambium::CorridorId operator()(Choice const& choice) const` (see ChangeLanes)");
     double const speed = limits.response().speed();
-    auto const leader = memory.change.active() ? view.ahead({.merging = limits.merging})
+    auto const leader = memory.change.active() ? detail::next_ahead(view, {.merging = limits.merging})
                                                : keep.next_in_way(view, limits, memory.lane, passes_in_lane(view));
     auto const home = view.place().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));

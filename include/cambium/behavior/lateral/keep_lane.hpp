@@ -113,7 +113,7 @@ struct KeepLane {
   void heed_next(View const& view, Limits& limits) const {
     if (!view.corridor().feeders.empty()) [[unlikely]]
       limits.heed(strictest_merging(view, limits));
-    else if (auto const next = view.ahead({.merging = limits.merging}))
+    else if (auto const next = detail::next_ahead(view, {.merging = limits.merging}))
       limits.heed(detail::constraint_of<typename Limits::Response>(view, *next));
   }
 
@@ -153,7 +153,7 @@ struct KeepLane {
   [[nodiscard]] std::optional<RoadUser> next_in_way(View const& view, Limits const& limits, Memory& memory,
                                                     bool may_pass = true) const {
     if (!steers(view, memory)) [[likely]]
-      return view.ahead({.merging = limits.merging});
+      return detail::next_ahead(view, {.merging = limits.merging});
     return next_aside(view, limits, memory, may_pass).next;
   }
 
@@ -231,7 +231,7 @@ struct KeepLane {
     auto const past = [&](double offset, double clearance) -> InWay {
       return {detail::next_in_way(view, offset, clearance, limits.merging), true, offset, clearance};
     };
-    auto const next = view.ahead({.merging = limits.merging});
+    auto const next = detail::next_ahead(view, {.merging = limits.merging});
     bool const is_agent = next && is_valid(next->agent);
     bool const is_aside = memory.aside != 0;
     if (is_agent && may_pass && next->speed < law.desired_speed() - least_gain && next->gap < farthest)

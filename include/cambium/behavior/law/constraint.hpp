@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <concepts>
 #include <limits>
+#include <optional>
 
 #include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
 
 namespace cambium {
 
@@ -19,6 +21,38 @@ struct Constraint {
 
 namespace detail {
 
+/// Whether a road user as small as a pedestrian is beside the vehicle, wholly behind its front end: the vehicle need
+/// not wait for it, and may stand in its way.
+[[nodiscard]] inline bool is_passed(RoadUser const& user) {
+  constexpr double small = 1.0;  // [m]
+  return user.gap < -user.length() && user.length() < small;
+}
+
+/// The next road user ahead of `passed`, which `is_passed`, and of others like that. O(those, log n).
+template <class View>
+CAMBIUM_NOINLINE [[nodiscard]] std::optional<RoadUser> next_beyond(View const& view, Look const& look,
+                                                                   RoadUser passed) {
+  for (;;) {
+    auto at = view.place();
+    at.s = passed.s + 1e-6;
+    at.piece = view.corridor().piece_at(at.s, at.piece);
+    auto next = view.ahead(at, look);
+    if (!next) return next;
+    next->gap += at.s - view.place().s;
+    if (!is_passed(*next)) return next;
+    passed = *next;
+  }
+}
+
+/// The next road user ahead in the own lane that the vehicle has not passed.
+template <class View>
+[[nodiscard]] std::optional<RoadUser> next_ahead(View const& view, Look const& look) {
+  auto next = view.ahead(look);
+  if (next && is_passed(*next)) [[unlikely]]
+    next = next_beyond(view, look, *next);
+  return next;
+}
+
 /// A neighbour in the lane of `place`, where the own vehicle is or would be, as a constraint, with its acceleration if
 /// `Law` asks for it. Before a merge the gap includes a share of the way there (`gap_before_merge`), which shrinks as
 /// the own vehicle drives. So a leader that pulls away counts as that much slower, but never as slower than the own
@@ -26,6 +60,8 @@ namespace detail {
 /// takes a small gap for harmless.
 template <class Law, class View>
 [[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user, map::LanePlace const& place) {
+  if (is_passed(user)) [[unlikely]]
+    return {};
   Constraint constraint{user.gap, user.speed, 0.0};
   if (!is_valid(user.agent)) return constraint;
   double const ahead = user.gap - (user.s - user.rear - place.s - view.shape().front), speed = view.state().speed;
