@@ -18,6 +18,7 @@
 #include "cambium/geometry/collision.hpp"
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/detail/conflict_ways.hpp"
 #include "cambium/map/map.hpp"
 
 using namespace cambium;
@@ -261,9 +262,29 @@ TEST_CASE("nobody comes to a conflict faster than the bends before it permit") {
           double const length = way.index_end - way.index_begin;
           CHECK(way.time_from_begin >= way.time_from_end);
           CHECK(way.time_from_begin <= way.time_from_end + length / 1.5);  // the sharpest bends of 0.75 m
-          CHECK(way.time_from(way.begin) == doctest::Approx(way.time_from_begin));
-          CHECK(way.time_from(way.begin + length) == doctest::Approx(way.time_from_end));
+          CHECK(way.time_from(way.begin) == doctest::Approx(std::max(0.0, way.time_from_begin)));
+          CHECK(way.time_from(way.begin + length) == doctest::Approx(std::max(0.0, way.time_from_end)));
         }
+}
+
+TEST_CASE("from each place on a conflict's lane the shortest time there is that of the fastest, to 0.2 s") {
+  double most = 0.0, longest = 0.0;
+  for (auto const& [name, map] : junction_maps())
+    for (auto const& [lane, passage] : passages(*map))
+      for (auto const* const conflict : passage.conflicts()) {
+        auto const& other = map->lane(conflict->other);
+        auto const& way = conflict->ways.front();
+        double const meets = std::clamp(conflict->hull().other_begin, 0.0, other.length());
+        for (double s = way.begin; s < other.length(); s += 2.0) {
+          map::detail::FastestArrival fastest;
+          fastest.go_back(other.path, s, meets);
+          most = std::max(most, way.time_from(s) - fastest.time);
+          longest = std::max(longest, fastest.time);
+          if (s >= meets) CHECK(way.time_from(s) == 0.0);
+        }
+      }
+  CHECK(most < 0.2);
+  CHECK(longest > 1.0);
 }
 
 // Signs or priorities of a street with traffic both ways; a roundabout's ring is no such street.

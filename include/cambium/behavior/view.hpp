@@ -124,7 +124,7 @@ struct ViewArchetype {
   /// its own, that of this agent, and the largest (see `map::LaneCorridor::section_of`). Nothing where its turn signals
   /// show another way.
   [[nodiscard]] std::optional<map::ConflictSection> section(RoadUser const& user, map::Conflict const& conflict,
-                                                            bool is_large, bool others_large) const;
+                                                            bool is_large, bool own_large, bool any_large) const;
   ///@}
 
   /// @name Lights

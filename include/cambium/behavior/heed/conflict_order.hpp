@@ -197,13 +197,13 @@ template <class View>
 /// - First come, first served: there, a driver that stands at its line goes before one that stopped there later or has
 ///   yet to stop. With right before left alone, four drivers would wait for each other again and again.
 /// - Patience: a driver that has waited too long for a standing vehicle goes; sooner before one that has the right of
-///   way and has stood all the while, for that cannot go.
-/// - A standing driver lets a vehicle go that has just started close to its line.
+///   way and has stood all the while, for that cannot go. Then it lets those go who stopped before it.
+/// - Where lights do not let both go, a standing driver lets a vehicle go that has just started close to its line.
 /// - Right of way by map, signs and rules (`map::right_of_way`).
 /// - Without right of way, the nearer vehicle goes; at about equal distance, the one with the smaller id.
 ///
-/// Two drivers disagree only by the third and fourth rules, which ask how long a driver has stood: both may start at
-/// once. Then they enter together, and the smaller id goes first.
+/// Two drivers disagree only by the rules that ask how long a driver has stood, or whether it has just started. Where
+/// both start at once, they enter together, and the smaller id goes first.
 ///
 /// O(1).
 template <class View>

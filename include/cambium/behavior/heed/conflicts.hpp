@@ -35,14 +35,16 @@ namespace cambium {
 ///   there is room behind the section once all before it have closed up to the end of a queue. Behind a merge at which
 ///   it goes first it needs none: the others would only stand behind it.
 /// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
-///   remembers who these are.
+///   remembers who these are. It lets those through who will not stop, whoever came first.
 ///
 /// So nobody waits forever. Order all vehicles inside by the step in which they entered, then by their ids. Each waits
 /// only for earlier ones, or drives behind a leader, which entered before it or is behind the section, where there was
 /// room, or behind a merge. So the earliest waits for nobody and leaves, and then the next one is the earliest. Queues
 /// do not close to a ring, for those who have to yield never fill it. Nor do those outside wait for each other in a
 /// ring: of those who stand, each loses its patience at a time of its own. One whom all others keep outside, for they
-/// do not stand, goes before those who can stop with ease after 80 s more.
+/// do not stand, goes before those who can stop with ease after 80 s more. One case is open: a queue may form behind a
+/// section while a driver is in it, if the next section begins close behind. So a driver inside that has stood for 10 s
+/// (20 s if its id is larger) passes an earlier one that stands and is not in the zone.
 ///
 /// And nobody collides whom all see and who heeds this: a driver enters only if it can stop before a zone until those
 /// before it have left that, and those after it can stop before theirs, for they were outside. A collision remains
@@ -137,8 +139,7 @@ struct Conflicts {
 
   static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
   static constexpr double air = 0.3;             // [m] distance kept to a conflict
-  static constexpr double longest_wait =
-      40.0;  // [s] beyond its patience, until it enters without room; twice that: see `claim_in_time`
+  static constexpr double longest_wait = 80.0;   // [s] beyond its patience: see `claim_in_time`
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   /// Where one waits.
@@ -397,8 +398,9 @@ struct Conflicts {
     }
     if (own_is_in) return Claim::free;
     auto const section = view.section(user, conflict, large, own.is_large, own.may_meet_large);
-    if (section) other.place = section->place_to_wait(user.front, detail::lets_go(view, conflict.other_light));
-    bool const has_entered = section ? detail::has_entered(at, user.speed, place) : is_in || !can_stop(user.speed, way);
+    other.place = section ? section->place_to_wait(user.front, detail::lets_go(view, conflict.other_light))
+                          : zone.other_begin - reach.front;
+    bool const has_entered = detail::has_entered(at, user.speed, place);
     auto const key = detail::section_key(user.agent, section ? section->number : 0, own.section);
     bool const is_first = comes_first(view, user, key, has_entered, is_next, own);
     if (own.is_settled) return Claim::free;
@@ -462,7 +464,7 @@ struct Conflicts {
   }
 
   /// The claim of a vehicle that goes first, has not entered yet, and arrives at the zone after `way` [m]. Who has
-  /// waited long takes a gap up to a second shorter, and after twice `longest_wait` any before one that can stop with
+  /// waited long takes a gap up to a second shorter, and after `longest_wait` any before one that can stop with
   /// ease.
   template <class View>
   [[nodiscard]] Claim claim_in_time(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
@@ -482,7 +484,7 @@ struct Conflicts {
     Window const ours{arrival(own, own_way), arrival(own, leaves - own.s) + build_up(own)};
     if (theirs.end + behind < ours.begin || ours.end + before < theirs.begin) return Claim::free;
     bool const stops_with_ease = cambium::can_stop(user.speed, place - at, 2.0);
-    return own.waited > own.patience + 2.0 * longest_wait && stops_with_ease ? Claim::free : Claim::yield;
+    return own.waited > own.patience + longest_wait && stops_with_ease ? Claim::free : Claim::yield;
   }
 
   /// Earliest time [s] at which the own vehicle has driven `distance` [m].

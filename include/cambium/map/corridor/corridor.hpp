@@ -72,14 +72,15 @@ struct CorridorSignal {
 struct ConflictWay {
   double index_begin{}, index_end{};
   double begin{};  ///< of the way where the stretch begins: position on the other lane's path, negative before it [m]
-  /// Shortest time to the conflict, from the stretch's begin and from its end, that bends permit even the fastest [s].
+  /// Shortest time to the conflict, from the stretch's begin and from its end, that bends permit even the fastest [s];
+  /// below 0 beyond the conflict.
   double time_from_begin{}, time_from_end{};
 
   /// The same from a position on the way [m], never more than it is: bends mostly come last.
   [[nodiscard]] double time_from(double at) const {
     double const length = index_end - index_begin,
                  share = length > 0.0 ? std::clamp((at - begin) / length, 0.0, 1.0) : 1.0;
-    return time_from_begin + share * (time_from_end - time_from_begin);
+    return std::max(0.0, time_from_begin + share * (time_from_end - time_from_begin));
   }
 };
 

@@ -20,7 +20,7 @@ struct FastestArrival {
 
   /// Goes back from position `to` to `from` [m] of a lane's path. O(length).
   void go_back(geometry::Line const& path, double from, double to) {
-    constexpr double step = 4.0, lateral = 3.0, braking = 4.0;  // [m], [m/s^2]
+    constexpr double step = 4.0, lateral = 4.0, braking = 4.0;  // [m], [m/s^2]
     if (!(to > from)) return;
     std::uint32_t hint = 0;
     double heading = path.pose(to, hint).heading;
@@ -35,6 +35,16 @@ struct FastestArrival {
     }
   }
 };
+
+/// Sets the times of a stretch of a lane's path, from `begin` to `end` [m], to a conflict at `meets` [m], at most
+/// `end`. `arrival` is that from the end, then that from the begin. O(length).
+inline void set_times(ConflictWay& stretch, geometry::Line const& path, double begin, double end, double meets,
+                      FastestArrival& arrival) {
+  stretch.time_from_end = arrival.time;
+  arrival.go_back(path, begin, meets);
+  stretch.time_from_begin = arrival.time;
+  if (begin < meets && meets < end) stretch.time_from_end = arrival.time * (meets - end) / (meets - begin);
+}
 
 /// Adds the lanes downstream (`ahead`) or upstream of `lane`, as far as way position `until` [m], each once, by the
 /// shortest way. `conflict` is where the conflict begins [m], `arrival` the one from the begin of `lane`.
@@ -60,9 +70,7 @@ inline void add_ways_beyond(Map const& map, Lane const& lane, bool ahead, double
       ConflictWay stretch{next.index_begin + from, next.index_begin + to, ahead ? way.far_end : far_end + from};
       Way reached{id, far_end, way.arrival};
       if (!ahead) {
-        stretch.time_from_end = reached.arrival.time;
-        reached.arrival.go_back(next.path, from, std::clamp(conflict - far_end, from, to));
-        stretch.time_from_begin = reached.arrival.time;
+        set_times(stretch, next.path, from, to, std::clamp(conflict - far_end, from, to), reached.arrival);
       }
       ways.push_back(stretch);
       open.push_back(reached);
@@ -76,8 +84,8 @@ inline void add_ways_beyond(Map const& map, Lane const& lane, bool ahead, double
                                                            double conflict, double to) {
   double const begin = std::max(0.0, from);
   FastestArrival arrival;
-  if (conflict > 0.0) arrival.go_back(lane.path, begin, std::min(conflict, lane.length()));
-  std::vector<ConflictWay> ways{{lane.index_begin + begin, lane.index_begin + lane.length(), begin, arrival.time}};
+  std::vector<ConflictWay> ways{{lane.index_begin + begin, lane.index_begin + lane.length(), begin}};
+  set_times(ways.front(), lane.path, begin, lane.length(), std::clamp(conflict, begin, lane.length()), arrival);
   add_ways_beyond(map, lane, true, to, conflict, arrival, ways);
   add_ways_beyond(map, lane, false, from, conflict, arrival, ways);
   return ways;
