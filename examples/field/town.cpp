@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <unordered_map>
 #include <variant>
@@ -184,6 +185,25 @@ std::vector<Row> turns(std::uint64_t seed) {
            true}};
 }
 
+/// Those who touched another in the last step, each with the largest speed relative to one that it touched [m/s].
+std::map<cb::AgentId, double> impacts(Sim const& world) {
+  std::map<cb::AgentId, double> hit;
+  if (!cb::AnyCollision{}(world)) return hit;
+  for (cb::Slot a{}; index_of(a) < world.size(); ++a)
+    for (cb::Slot b{}; b < a; ++b) {
+      if (!cb::in_traffic(world, a) || !cb::in_traffic(world, b)) continue;
+      if (!cb::geometry::intersects(cb::motion_at(world, a), cb::motion_at(world, b))) continue;
+      auto const &p = world.frame().agents[a].state, &q = world.frame().agents[b].state;
+      double const along = p.speed * std::cos(p.heading) - q.speed * std::cos(q.heading),
+                   across = p.speed * std::sin(p.heading) - q.speed * std::sin(q.heading);
+      for (auto const slot : {a, b}) {
+        auto& most = hit[world.roster().agents[slot].id];
+        most = std::max(most, std::hypot(along, across));
+      }
+    }
+  return hit;
+}
+
 /// Human drivers on three junctions: who touches another, who collides as the police would hear of it, and who brakes
 /// by half of g.
 std::vector<Row> errors(std::uint64_t seed) {
@@ -212,9 +232,6 @@ std::vector<Row> errors(std::uint64_t seed) {
            }))
         seen[entered.id] = {world.state(entered.id).speed};
       if (!world.step(dt)) throw cb::Error("a step of the simulation", "failed", "report this as a bug");
-      std::vector<cb::AgentId> hit;
-      double fastest = 0.0;
-      bool const collides = cb::AnyCollision{}(world);
       for (cb::Slot slot{}; index_of(slot) < world.size(); ++slot) {
         auto const id = world.roster().agents[slot].id;
         double const speed = world.frame().agents[slot].state.speed;
@@ -225,13 +242,13 @@ std::vector<Row> errors(std::uint64_t seed) {
           before.braked = world.time();
         }
         before.speed = speed;
-        if (!collides || !cb::Collision{}(world, slot)) continue;
-        hit.push_back(id);
-        fastest = std::max(fastest, speed);
       }
+      auto const hit = impacts(world);
       touched += static_cast<double>(hit.size());
-      if (!hit.empty() && fastest > reported) crashed += static_cast<double>(hit.size());
-      for (auto const id : hit) world.remove(id);
+      for (auto const& [id, impact] : hit) {
+        crashed += impact > reported;
+        world.remove(id);
+      }
       inflow.leave(world);
     }
   }
