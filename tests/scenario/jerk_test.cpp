@@ -210,7 +210,7 @@ TEST_CASE("drivers are smooth on roads") {
 TEST_CASE("drivers are smooth at junctions, lights and stop signs too") {
   check_smooth(at_junctions<Intersection>());
   check_smooth(at_junctions<UrbanDriver>());
-  check_smooth(at_junctions<BasicUrbanDriver<Acc>>());
+  check_smooth(at_junctions<BasicUrbanDriver<Idm>>());
 }
 
 TEST_CASE("without the bound the same situations are not smooth") {

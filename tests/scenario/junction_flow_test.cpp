@@ -14,10 +14,12 @@
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "../support/scale.hpp"
+#include "cambium/behavior/people.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/map/lanelet/lanelet2.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/scenario/dataset/common_road.hpp"
 #include "cambium/scenario/junction_site.hpp"
@@ -116,6 +118,30 @@ TEST_CASE("a saturated crossing keeps flowing, whatever the drivers' temperament
 }
 
 TEST_CASE("a saturated roundabout keeps flowing") { check_flow(support::own_map("roundabout.xodr"), {31.0, 31.0}); }
+
+// Here the ring once filled up, and all waited for room behind the next entry.
+TEST_CASE("a saturated roundabout keeps flowing with drivers who differ as people do") {
+  auto const site = find_junction_site(support::own_map("roundabout.xodr"));
+  RandomStream random(7, 0, 0);
+  std::vector<UrbanDriver> drivers;
+  for (int i = 0; i < 40; ++i) drivers.push_back(presets::town_cars().draw(random).of(UrbanDriver{}));
+  for (std::uint64_t const seed : {7u, 8u}) {
+    auto const flow = saturate(site, 0.0, false, 0.2, seed, drivers);
+    INFO(flow.per_minute, " vehicles a minute, longest stand ", flow.longest_stand, " s, seed ", seed);
+    CHECK(flow.collisions == 0);
+    CHECK(flow.longest_stand < 120.0);
+    CHECK(flow.per_minute > 36.0);
+  }
+}
+
+// Trucks that turned left here once met head-on, ten of them in 20 minutes.
+TEST_CASE("trucks do not collide in a large crossing of lanelets") {
+  auto const file = corpus::find("lanelet2/autoware_intersection.osm");
+  if (!file) return;
+  auto const flow = saturate({load_lanelet2(file->string()).map, {}}, 0.35, false, 0.2, 5);
+  CHECK(flow.collisions == 0);
+  CHECK(flow.per_minute > 100.0);
+}
 
 // Two-way stop: 41 cars a minute by the Highway Capacity Manual 2000, gap acceptance (see examples/soak/capacity.hpp).
 TEST_CASE("nobody waits forever on a side road that enters a saturated main road") {
