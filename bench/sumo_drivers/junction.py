@@ -13,7 +13,7 @@ WHEELS = 0.9  # of a car behind its front end [m]: what observers see passing a 
 SATURATED = 3600.0  # demand [1/h] of a queue that does not end
 
 
-def crossing(kind):
+def crossing(kind, limit=TOWN_LIMIT):
     """Builds two streets that cross: "1i" leads in from arm 1 (east), "1o" out to it; 2, 3, 4: north, west, south. `kind`
     is that of SUMO's node; arms 1 and 3 have priority where it has signs."""
     nodes, edges = [element("node", id="c", x=0, y=0, type=kind, radius=6.5)], []  # arms end 10 m from the middle
@@ -23,7 +23,7 @@ def crossing(kind):
         nodes.append(element("node", id=i + 1, x=length * along[0], y=length * along[1]))
         for name, ends in ((f"{i + 1}i", (i + 1, "c")), (f"{i + 1}o", ("c", i + 1))):
             rank = 1 if i % 2 else 2
-            edges.append(element("edge", id=name, from_=ends[0], to=ends[1], speed=TOWN_LIMIT, width=3.5, priority=rank))
+            edges.append(element("edge", id=name, from_=ends[0], to=ends[1], speed=limit, width=3.5, priority=rank))
     return lambda simulation: simulation.build(nodes, edges)
 
 

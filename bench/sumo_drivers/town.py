@@ -67,12 +67,12 @@ def red_running(settings, folder):
 Alone = collections.namedtuple("Alone", "factor to_line moments")  # to_line: of each moment [m]
 
 
-def drive_alone(settings, folder, kind, routes, count, distance, plan=None):
+def drive_alone(settings, folder, kind, routes, count, distance, plan=None, limit=TOWN_LIMIT):
     """Cars that come one after the other, each alone, from `distance` [m] before the junction; by turns on the `routes`.
     `plan(number, factor)` gives when the light turns yellow after the car has entered [s]."""
     apart, red_until = 90.0, 55.0  # [s]
     draw, simulation, phases, cars = random.Random(settings.seed), Simulation(folder, settings), [], []
-    crossing(kind)(simulation)
+    crossing(kind, limit)(simulation)
     net = Net(simulation.path("net.xml"))
     routes = [tuple(route) for route in routes]
     factors = [min(2.0, max(0.2, draw.gauss(1.0, 0.1))) for _ in range(count)]  # those of SUMO's default car
@@ -87,7 +87,7 @@ def drive_alone(settings, folder, kind, routes, count, distance, plan=None):
         cars.append(
             element(
                 "vehicle", id=i, type="car", route=f"r{i % len(routes)}", depart=apart * i, departPos=length - distance,
-                departSpeed=TOWN_LIMIT * factor, speedFactor=factor,
+                departSpeed=limit * factor, speedFactor=factor,
             )  # fmt: skip
         )
     ways = [element("route", id=f"r{i}", edges=" ".join(route)) for i, route in enumerate(routes)]
@@ -122,21 +122,21 @@ def logistic(x, stopped):
 
 
 def yellow(settings, folder):
-    """Drivers alone on their way to a light that turns yellow when they are up to 8 s before it."""
-    distance, count, brakes, window = 180.0, 500, -0.5, 0.5
+    """Drivers alone at 70 km/h on their way to a light that turns yellow when they are up to 6.5 s before it."""
+    distance, count, brakes, window, limit = 180.0, 500, -0.5, 0.5, 70 / 3.6
     draw = random.Random(settings.seed + 1)
-    ways = [draw.uniform(0.5, 8.0) for _ in range(count)]
+    ways = [draw.uniform(0.5, 6.5) for _ in range(count)]
     turns = [0.0] * count
 
     def plan(i, factor):
-        turns[i] = round(max(0.1, distance / (TOWN_LIMIT * factor) - ways[i]), 1)
+        turns[i] = round(max(0.1, distance / (limit * factor) - ways[i]), 1)
         return turns[i]
 
     reactions, decelerations, stopped = [], [], []
-    cars = drive_alone(settings, folder, "traffic_light", [("1i", "3o")], count, distance, plan)
+    cars = drive_alone(settings, folder, "traffic_light", [("1i", "3o")], count, distance, plan, limit)
     for way, turn, (_, to_line, moments) in zip(ways, turns, cars):
         stopped.append(to_line[-1] > 0.0)
-        if not stopped[-1] or not 2.0 <= way <= 5.5:
+        if not stopped[-1] or not 2.5 <= way <= 5.5:
             continue
         # SUMO's drivers dawdle by up to 1.3 m/s^2 from step to step: brakes by more than 0.5 m/s^2 over half a second.
         ahead = max(1, round(window / settings.step))
