@@ -33,7 +33,7 @@ namespace cambium {
 ///   in time, and for those who go first (`detail::goes_first`) and would be in the zone less than `time_margin` before
 ///   or after it, on a minor road less than `minor_road_margin` more after it. It enters when it waits for nobody and
 ///   there is room behind the section once all before it have closed up to the end of a queue. Behind a merge at which
-///   it goes first it needs none: the others would only stand behind it.
+///   it goes first, without lights, it needs none: the others would only stand behind it.
 /// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
 ///   remembers who these are. It lets those through who will not stop, whoever came first.
 ///
@@ -220,7 +220,8 @@ struct Conflicts {
     double const end_of_road = front_in_queue(view, own, limits.constraint());
     if (end_of_road == infinite) return;
     for (auto at = first; at != end; ++at) {
-      if (at->kind == map::OverlapKind::merge && at->right_of_way == map::RightOfWay::first) continue;
+      if (at->kind == map::OverlapKind::merge && at->right_of_way == map::RightOfWay::first && !is_valid(at->light))
+        continue;
       auto const& zone = at->zones[own.is_large][own.may_meet_large];
       come_to(view, *at, own);
       if (!zone.empty() && own.section != map::ConflictSection::none && !own.has_entered &&
