@@ -58,7 +58,7 @@ inline constexpr double judged_deceleration = 3.0;
 /// The highest acceleration that drivers reckon with in others, in a step [m/s^2].
 inline constexpr double hardest_start = 3.5;
 
-/// How far beyond the vehicle before it a driver looks for the end of a queue [m].
+/// How far apart two vehicles are at most that count as one queue [m].
 inline constexpr double queue_view = 60.0;
 
 /// Whether a vehicle has entered the section before which it waits at `place` [m]: it is beyond that, or can no longer
@@ -197,7 +197,7 @@ template <class View>
 /// - First come, first served: there, a driver that stands at its line goes before one that stopped there later or has
 ///   yet to stop. With right before left alone, four drivers would wait for each other again and again.
 /// - Patience: a driver that has waited too long for a standing vehicle goes; sooner before one that has the right of
-///   way and has stood all the while, for that cannot go. Then it lets those go who stopped before it.
+///   way but has stood all the while: something must be in its way. Else it lets those go who stopped before it.
 /// - Where lights do not let both go, a standing driver lets a vehicle go that has just started close to its line.
 /// - Right of way by map, signs and rules (`map::right_of_way`).
 /// - Without right of way, the nearer vehicle goes; at about equal distance, the one with the smaller id.

@@ -21,8 +21,8 @@ struct Constraint {
 
 namespace detail {
 
-/// Whether a road user as small as a pedestrian is beside the vehicle, wholly behind its front end: the vehicle need
-/// not wait for it, and may stand in its way.
+/// Whether a road user as small as a pedestrian is beside the vehicle, wholly behind its front end. The vehicle
+/// need not wait for it; both would wait for good where the vehicle stands in the pedestrian's way.
 [[nodiscard]] inline bool is_passed(RoadUser const& user) {
   constexpr double small = 1.0;  // [m]
   return user.gap < -user.length() && user.length() < small;
