@@ -259,6 +259,23 @@ TEST_CASE("at a fork the corridor keeps to the route, else it goes the straighte
   CHECK(one->corridors[0].continues);
 }
 
+TEST_CASE("lanes that part split along all lanes of the way, where that is cut into short ones, too") {
+  std::vector<Lane> lanes;
+  auto const a = add_straight(lanes, {0, 0, 0}, 100);
+  auto const exit = add_lane(lanes, arc({100, 0, 0}, -0.005, 60));
+  auto const piece = add_straight(lanes, {100, 0, 0}, 10), goes_on = add_straight(lanes, {110, 0, 0}, 100);
+  link(lanes, a, exit);
+  link(lanes, a, piece);
+  link(lanes, piece, goes_on);
+  auto const map = make_map(lanes);
+  for (auto const& route : {std::vector<LaneId>{a, exit}, std::vector<LaneId>{a, piece, goes_on}}) {
+    auto const road = build_road_corridor(*map, route_of(*map, route));
+    auto const& conflicts = road->corridors[0].conflicts;
+    CHECK(conflicts.size() >= 2);
+    for (auto const& conflict : conflicts) CHECK(conflict.kind == OverlapKind::split);
+  }
+}
+
 TEST_CASE("a corridor follows its route where a lane has two successors side by side") {
   std::vector<Lane> lanes;
   auto const a = add_straight(lanes, {0, 0, 0}, 100);

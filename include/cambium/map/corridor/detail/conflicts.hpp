@@ -117,15 +117,19 @@ class ConflictFinder {
   }
 
   /// The lanes outside of a lane's junction from which one comes to it (`ahead`: to which it leads); outside of
-  /// junctions those next to it.
+  /// junctions those next to it, and where these are short, for roads may be cut anywhere, those beyond.
   [[nodiscard]] std::vector<LaneId> ends_of(Lane const& lane, bool ahead) const {
+    constexpr double is_short = 50.0;  // [m]
     auto const junction = junction_of(lane.id);
     std::vector<LaneId> ends, open{lane.id};
+    auto const add = [](std::vector<LaneId>& list, LaneId id) {
+      if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
+    };
     for (std::size_t i = 0; i < open.size() && i < 64; ++i)
       for (auto const id : ahead ? map_.lane(open[i]).successors : map_.lane(open[i]).predecessors) {
-        bool const outside = !is_valid(junction) || junction_of(id) != junction;
-        auto& list = outside ? ends : open;
-        if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
+        bool const inside = is_valid(junction) && junction_of(id) == junction;
+        if (!inside) add(ends, id);
+        if (inside || (!is_valid(junction) && map_.lane(id).length() < is_short)) add(open, id);
       }
     return ends;
   }
