@@ -217,15 +217,16 @@ struct Conflicts {
         if (claims[other] != Claim::free) obey(claims[other], conflict, other, own, view, dt);
     }
     if (own.is_far || !keep_clear) return;
-    double const end_of_road = front_in_queue(view, own, limits.constraint());
-    if (end_of_road == infinite) return;
+    std::optional<double> end_of_road;
     for (auto at = first; at != end; ++at) {
       if (at->kind == map::OverlapKind::merge && at->right_of_way == map::RightOfWay::first && !is_valid(at->light))
         continue;
       auto const& zone = at->zones[own.is_large][own.may_meet_large];
       come_to(view, *at, own);
-      if (!zone.empty() && own.section != map::ConflictSection::none && !own.has_entered &&
-          is_full_behind(view, zone, own, end_of_road))
+      if (zone.empty() || own.section == map::ConflictSection::none || own.has_entered || own.stops_at <= own.place)
+        continue;
+      if (!end_of_road) end_of_road = front_in_queue(view, own, limits.constraint());
+      if (is_full_behind(view, zone, own, *end_of_road))
         obey(Claim::yield, *at, own.may_meet_large, own, view, dt);
     }
   }

@@ -238,7 +238,8 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
     FeederFinder(map, corridor).find();
     corridor.conflicts = ConflictFinder(map, corridor).find();
     corridor.signals = corridor_signals(map, corridor);
-    for (auto& feeder : corridor.feeders) feeder.by_rule = merges_by_rule(corridor, feeder.free_until);
+    for (auto& feeder : corridor.feeders)
+      feeder.by_rule = std::isfinite(feeder.free_until) && merges_by_rule(corridor, feeder.free_until);
     road->corridors.push_back(std::move(corridor));
   }
   return road;
