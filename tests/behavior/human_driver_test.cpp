@@ -74,16 +74,16 @@ Platoon platoon(Leader const& leader, Follower const& follower, int followers, s
 
 /// How much larger (complex: and how much later) a small wave of the leader's speed is behind one follower. From the
 /// Fourier transform of the linear law with delay T, where the speeds v and u of follower and leader go as
-/// exp(i w t): i w v = exp(-i w T) (f_s (s + T' (u - v)) + f_v v + f_u u + (f_v + f_u) T' i w v), s = (u - v) / (i w),
-/// with T' = T if the driver anticipates, else 0.
+/// exp(i w t): i w v = exp(-i w T) (f_s s + f_v v + f_u u), s = (u - v) / (i w). A driver that anticipates knows its
+/// own place and speed at t, and extrapolates the leader's from t - T at constant acceleration.
 std::complex<double> gain(double frequency, double delay, bool anticipates) {
   auto const law = [](double v, double s, double u) { return cb::idm_acceleration(driver, v, s, u); };
   auto const f = cb::linear_following(law, speed, cb::idm_equilibrium_gap(driver, speed));
   std::complex<double> const iw(0.0, frequency), late = std::exp(-iw * delay);
+  auto const own = anticipates ? 1.0 : late;
   double const ahead = anticipates ? delay : 0.0;
-  auto const by_gap = f.by_gap * (1.0 / iw + ahead);
-  return late * (by_gap + f.by_leader_speed) /
-         (iw + late * (by_gap - f.by_speed - (f.by_speed + f.by_leader_speed) * iw * ahead));
+  auto const place = late * (1.0 / iw + ahead + 0.5 * iw * ahead * ahead), leader_speed = late * (1.0 + iw * ahead);
+  return (f.by_gap * place + f.by_leader_speed * leader_speed) / (iw + own * (f.by_gap / iw - f.by_speed));
 }
 
 double largest_gain(double delay, bool anticipates) {

@@ -35,7 +35,10 @@ namespace cambium {
 /// - Reaction time T': decisions are interpolated where it is not a multiple of the step.
 /// - Estimation errors: gap exp(V_s w_s), and the other's speed + gap r_c w_r, with two independent Wiener
 ///   (Ornstein-Uhlenbeck) processes w of mean 0, variance 1 and the given persistence time, for all road users alike.
-/// - Temporal anticipation: the driver decides for the situation a reaction time ahead, see `HumanView`.
+/// - Temporal anticipation: the driver decides for the situation a reaction time ahead. In the paper its acceleration
+///   and the approach rate stay until then. Ours knows what it has decided and not yet done, and sees how the others
+///   accelerate (`HumanView`). With the paper's, drivers in town brake by more than 0.5 g ten times as often: while a
+///   decision is under way, they decide on the same braking again.
 /// - The driver knows in advance what does not move (bends, limits, lines to stop at, the lane's end): it never
 ///   accelerates more than it would alone on the road, without delay. In the paper the free road has the delay, too;
 ///   the two differ only on a free road.
@@ -96,7 +99,6 @@ struct HumanDriver {
     MemoryOf<Nominal> nominal{};
     std::array<float, decisions> decided{};    ///< accelerations, latest first [m/s^2]
     float age{};                               ///< of the latest [s]
-    float speed{};                             ///< own, before the last step [m/s]
     float gap_error{}, rate_error{}, noise{};  ///< the processes w
     bool has_begun = false;
     bool looks_away = false;
@@ -110,7 +112,6 @@ struct HumanDriver {
       return parameter_list(parameter("nominal", &P::nominal, "the nominal driver's"),
                             parameter("decided", &P::decided, "m/s^2", any_finite, "accelerations, latest first"),
                             parameter("age", &P::age, "s", any_finite, "of the latest"),
-                            parameter("speed", &P::speed, "m/s", any_finite, "own, before the last step"),
                             parameter("gap_error", &P::gap_error, "-", any_finite, "process of the error in gaps"),
                             parameter("rate_error", &P::rate_error, "-", any_finite, "likewise in rates"),
                             parameter("has_begun", &P::has_begun, "it has driven a step"),
@@ -145,13 +146,11 @@ struct HumanDriver {
     double const alone = planned(view, before, {.alone = true}, dt);
     memory.age += static_cast<float>(dt);
     if (is_new || memory.age > interval(dt) - 0.5 * dt) {
-      if (anticipates) estimate.reach = reaction_time;
-      estimate.acceleration = is_new ? 0.0 : (speed - static_cast<double>(memory.speed)) / dt;
+      if (anticipates) foresee(memory, speed, alone, dt, estimate);
       double const last = memory.decided[0];
       decide(memory, memory.looks_away ? last : smoothly(decision(view, before, estimate, alone, dt), speed, last, dt),
              is_new);
     }
-    memory.speed = static_cast<float>(speed);
     if (acts_now) return course;
     double const decided = in_effect(memory, dt), error = noise * static_cast<double>(memory.noise);
     double const wanted = decided + error * std::min(1.0, speed / steady);
@@ -202,6 +201,8 @@ struct HumanDriver {
     bool const creeps = speed >= standing_speed && speed < steady;
     if (creeps || std::abs(static_cast<double>(memory.decided[0])) > little) return false;
     estimate.reach = glance;
+    estimate.way = glance * speed;
+    estimate.speed = speed;
     estimate.decides = true;
     return planned(view, memory.nominal, estimate, dt) > -2.0 * little;
   }
@@ -244,6 +245,19 @@ struct HumanDriver {
                                            nominal.law.lowest_acceleration, {nominal.jerk, last}, interval(dt)));
     else
       return wanted;
+  }
+
+  /// Extends the estimate to the time at which what is decided now takes effect.
+  void foresee(Memory driven, double speed, double alone, double dt, HumanEstimate& estimate) const {
+    estimate.reach = reaction_time;
+    estimate.speed = speed;
+    for (double rest = reaction_time; rest > 1e-9; rest -= dt) {
+      double const step = std::min(dt, rest), acceleration = std::min(in_effect(driven, dt), alone);
+      auto const motion = ConstantAcceleration{.acceleration = acceleration}.motion(estimate.speed, step);
+      estimate.way += motion.distance;
+      estimate.speed = motion.speed;
+      driven.age += static_cast<float>(step);
+    }
   }
 
   static void decide(Memory& memory, double acceleration, bool is_first) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/constants.hpp"
 
@@ -12,21 +13,20 @@ namespace cambium {
 
 /// A driver's estimation errors at one moment, and how far ahead it extrapolates what it sees.
 struct HumanEstimate {
-  double gap_factor = 1.0;    ///< estimated gap / true gap [-]
-  double rate_error = 0.0;    ///< error of the other's estimated speed, per metre of gap [1/s]
-  double reach = 0.0;         ///< the estimate is for this time ahead [s]
-  double acceleration = 0.0;  ///< own, assumed until then [m/s^2]
-  bool alone = false;         ///< sees no road users, but where ways cross
-  bool decides = false;       ///< for later: the present acceleration bounds nothing
+  double gap_factor = 1.0;  ///< estimated gap / true gap [-]
+  double rate_error = 0.0;  ///< error of the other's estimated speed, per metre of gap [1/s]
+  double reach = 0.0;       ///< the estimate is for this time ahead [s]
+  double way = 0.0;         ///< own, driven until then [m]
+  double speed = 0.0;       ///< own, then, where `reach` is not 0 [m/s]
+  bool alone = false;       ///< sees no road users, but where ways cross
+  bool decides = false;     ///< for later: the present acceleration bounds nothing
 };
 
 /// A view as an imperfect driver has it: like `View`, but lengthwise distances and speeds of road users in lanes are
-/// estimated with the driver's errors, and extrapolated to a time ahead (Treiber, Kesting, Helbing 2006): the own place
-/// at constant speed, the own speed at constant acceleration, gaps at a constant approach rate, which itself stays. So
-/// a driver that brakes sees its leader slower by as much; one that stands is seen to stand, and comes closer. Objects
-/// are known to stand. Lateral positions and the answers of `View::state(user)`, `around(distance, f)`, `off_lanes`,
-/// `acceleration` and `light` stay as they are. With a default `HumanEstimate` all answers equal those of `View`, to
-/// the last bit.
+/// estimated with the driver's errors, and extrapolated to a time ahead (after Treiber, Kesting, Helbing 2006): the
+/// others keep their acceleration until they stand; the own place and speed are the estimate's. Objects are known to
+/// stand. Lateral positions and the answers of `View::state(user)`, `around(distance, f)`, `off_lanes`, `acceleration`
+/// and `light` stay as they are. With a default `HumanEstimate` all answers equal those of `View`, to the last bit.
 template <class View>
 class HumanView : public View {
  public:
@@ -35,11 +35,8 @@ class HumanView : public View {
   HumanView(View const& view, HumanEstimate const& estimate)
       : View(view), estimate_(estimate), state_(view.state()), place_(view.place()) {
     if (!(estimate.reach > 0.0)) return;
-    double const speed = std::max(0.0, state_.speed);
-    way_ = speed * estimate.reach;
-    state_.speed = std::max(0.0, speed + estimate.reach * estimate.acceleration);
-    faster_ = state_.speed - speed;
-    place_ = moved(place_, way_);
+    state_.speed = estimate.speed;
+    place_ = moved(place_, estimate.way);
   }
 
   [[nodiscard]] State const& state() const { return state_; }
@@ -49,15 +46,15 @@ class HumanView : public View {
   using View::shape;
   [[nodiscard]] decltype(auto) state(RoadUser const& agent) const { return View::state(agent); }
   [[nodiscard]] map::LanePlace const& place() const { return place_; }
-  [[nodiscard]] map::LanePlace place(CorridorId corridor) const { return moved(View::place(corridor), way_); }
+  [[nodiscard]] map::LanePlace place(CorridorId corridor) const { return moved(View::place(corridor), estimate_.way); }
 
   [[nodiscard]] std::optional<RoadUser> ahead(Look const& look = {}) const { return seen(View::ahead(look), 1); }
   [[nodiscard]] std::optional<RoadUser> behind(Look const& look = {}) const { return seen(View::behind(look), -1); }
   [[nodiscard]] std::optional<RoadUser> ahead(map::LanePlace const& from, Look const& look = {}) const {
-    return seen(View::ahead(moved(from, -way_), look), 1);
+    return seen(View::ahead(moved(from, -estimate_.way), look), 1);
   }
   [[nodiscard]] std::optional<RoadUser> behind(map::LanePlace const& from, Look const& look = {}) const {
-    return seen(View::behind(moved(from, -way_), look), -1);
+    return seen(View::behind(moved(from, -estimate_.way), look), -1);
   }
   [[nodiscard]] std::optional<RoadUser> merging(double merge, double limit) const {
     return seen(View::merging(merge, limit), 1);
@@ -68,7 +65,7 @@ class HumanView : public View {
   }
   template <class F>
   void around(map::LanePlace const& from, double distance, F&& f) const {
-    auto const here = moved(from, -way_);
+    auto const here = moved(from, -estimate_.way);
     if (!estimate_.alone)
       View::around(here, distance, [&](RoadUser const& user) { f(seen(user, user.s < here.s ? -1 : 1)); });
   }
@@ -110,9 +107,13 @@ class HumanView : public View {
       if (is_valid(user.agent) && estimate_.rate_error != 0.0)
         user.speed = std::max(0.0, user.speed + before * estimate_.rate_error);
     }
-    user.gap += sign * (estimate_.reach * user.speed - way_);
-    user.s += sign * (user.gap - before) + way_;
-    if (user.speed >= standing_speed) user.speed += faster_;
+    if (estimate_.reach > 0.0) {
+      double const acceleration = is_valid(user.agent) ? View::acceleration(user) : 0.0;
+      auto const motion = ConstantAcceleration{.acceleration = acceleration}.motion(user.speed, estimate_.reach);
+      user.gap += sign * (motion.distance - estimate_.way);
+      user.speed = motion.speed;
+    }
+    user.s += sign * (user.gap - before) + estimate_.way;
     return user;
   }
   [[nodiscard]] std::optional<RoadUser> seen(std::optional<RoadUser> const& user, int sign) const {
@@ -122,8 +123,6 @@ class HumanView : public View {
   HumanEstimate estimate_;
   State state_;
   map::LanePlace place_;
-  double way_ = 0.0;     ///< driven until the time of the estimate [m]
-  double faster_ = 0.0;  ///< own speed then, above that of now [m/s]
 };
 
 }  // namespace cambium
