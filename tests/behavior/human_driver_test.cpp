@@ -312,6 +312,62 @@ TEST_CASE("a driver errs about the speeds of vehicles, but knows that objects st
   CHECK(cb::HumanView(now, cb::HumanEstimate{.rate_error = 0.1}).ahead()->speed == doctest::Approx(20.0 + 0.1 * gap));
 }
 
+TEST_CASE("from vehicle to vehicle a human view finds each one once, whatever it expects of them") {
+  Platoon world(straight_road(1, 500.0));
+  auto const id = add(world, 1, 50.0, 12.0, Swinging{});
+  std::vector<cb::AgentId> const others{add(world, 1, 65.0, 6.0, Swinging{}), add(world, 1, 110.0, 0.0, Swinging{}),
+                                        add(world, 1, 160.0, 14.0, Swinging{})};
+  auto const view = world.observe(id);
+  for (double const gap_factor : {0.7, 1.0, 1.4})
+    for (double const way : {0.0, 3.0, 14.0, 24.0}) {
+      cb::HumanView const human(view, {.gap_factor = gap_factor, .reach = way / 12.0, .way = way, .speed = 12.0});
+      std::vector<cb::AgentId> found;
+      for (auto at = human.place(); auto const next = human.ahead(at); at.s = next->s + 0.01) {
+        found.push_back(next->agent);
+        REQUIRE(found.size() < 9);
+      }
+      CHECK(found == others);
+      // Who is ahead stays ahead.
+      CHECK(human.ahead()->gap >= 0.0);
+    }
+}
+
+TEST_CASE("an oncoming vehicle is expected to keep its acceleration along its own heading") {
+  Traffic<Human, cb::StaticTrajectory> world(straight_road(1, 500.0));
+  auto const id = add(world, 1, 50.0, 12.0, precise(0.6, true));
+  std::vector<cb::State> states;  // brakes by 1 m/s^2
+  for (double t = 0.0; t < 5.0; t += 0.1)
+    states.push_back({t, 150.0 - 10.0 * t + 0.5 * t * t, -1.75, cb::geometry::pi, 10.0 - t});
+  world.add({.position = {150.0, -1.75}, .speed = 10.0, .behavior = cb::StaticTrajectory(states)});
+  for (int k = 0; k < 3; ++k) REQUIRE(world.step(0.1));
+  auto const view = world.observe(id);
+  auto const now = view.ahead();
+  REQUIRE(now);
+  CHECK(now->speed == doctest::Approx(-9.7));
+  auto const then = cb::HumanView(view, {.rate_error = 0.01, .reach = 2.0, .way = 24.0, .speed = 12.0}).ahead();
+  REQUIRE(then);
+  double const seen = -9.7 + 0.01 * now->gap;
+  CHECK(then->speed == doctest::Approx(seen + 2.0));
+  CHECK(then->gap == doctest::Approx(now->gap + 2.0 * seen + 2.0 - 24.0));
+}
+
+TEST_CASE("a human driver waits for a pedestrian ahead and passes one beside it") {
+  for (double const gap : {-2.5, -1.0, 6.0, 40.0}) {
+    CAPTURE(gap);
+    Traffic<Human, cb::ConstantAcceleration> world(straight_road(1, 500.0));
+    auto const pedestrian = cb::geometry::pedestrian();
+    auto const id = add(world, 1, 50.0, 14.0, precise(0.6, true));
+    double const x = 50.0 + cb::geometry::car().front + gap + pedestrian.rear;
+    world.add({.position = {x, gap < 0.0 ? -3.1 : -1.75},
+               .speed = 0.0,
+               .shape = pedestrian,
+               .behavior = cb::ConstantAcceleration{}});
+    for (int k = 0; k < 80; ++k) REQUIRE(world.step(0.1));
+    CHECK((world.state(id).speed > 14.0) == (gap < 0.0));
+    if (gap > 30.0) CHECK(world.state(id).x < x);
+  }
+}
+
 TEST_CASE("a driver that looks away notices later that its leader brakes") {
   auto inattentive = precise(0.6, true);
   inattentive.attentive = 3.0;

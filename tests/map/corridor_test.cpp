@@ -276,6 +276,26 @@ TEST_CASE("lanes that part split along all lanes of the way, where that is cut i
   }
 }
 
+TEST_CASE("lanes that have parted and meet again cross, however short the lanes between are") {
+  for (double const length : {25.0, 45.0, 70.0}) {
+    std::vector<Lane> lanes;
+    auto const a = add_straight(lanes, {0, 0, 0}, 100);
+    auto const left = add_straight(lanes, {100, 0, 0.5}, length), right = add_straight(lanes, {100, 0, -0.5}, length);
+    double const x = 100 + length * std::cos(0.5), y = length * std::sin(0.5);
+    auto const down = add_straight(lanes, {x, y, -0.35}, 140), up = add_lane(lanes, arc({x, -y, 0.35}, 0.004, 140));
+    link(lanes, a, left);
+    link(lanes, a, right);
+    link(lanes, left, down);
+    link(lanes, right, up);
+    auto const map = make_map(lanes);
+    auto const road = build_road_corridor(*map, route_of(*map, {a, left, down}));
+    auto const& conflicts = road->corridors[0].conflicts;
+    CHECK(std::any_of(conflicts.begin(), conflicts.end(), [&](Conflict const& conflict) {
+      return conflict.other == up && conflict.kind == OverlapKind::crossing;
+    }));
+  }
+}
+
 TEST_CASE("a corridor follows its route where a lane has two successors side by side") {
   std::vector<Lane> lanes;
   auto const a = add_straight(lanes, {0, 0, 0}, 100);

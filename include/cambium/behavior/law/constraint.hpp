@@ -32,9 +32,8 @@ namespace detail {
 template <class View>
 CAMBIUM_NOINLINE [[nodiscard]] std::optional<RoadUser> next_beyond(View const& view, Look const& look,
                                                                    RoadUser passed) {
-  for (;;) {
-    auto at = view.place();
-    at.s = passed.s + 1e-6;
+  for (auto at = view.place();;) {
+    at.s = passed.s > at.s ? passed.s + 1e-6 : at.s + 0.1;  // an observer that errs may find the same one again
     at.piece = view.corridor().piece_at(at.s, at.piece);
     auto next = view.ahead(at, look);
     if (!next) return next;

@@ -117,19 +117,15 @@ class ConflictFinder {
   }
 
   /// The lanes outside of a lane's junction from which one comes to it (`ahead`: to which it leads); outside of
-  /// junctions those next to it, and where these are short, for roads may be cut anywhere, those beyond.
+  /// junctions those next to it.
   [[nodiscard]] std::vector<LaneId> ends_of(Lane const& lane, bool ahead) const {
-    constexpr double is_short = 50.0;  // [m]
     auto const junction = junction_of(lane.id);
     std::vector<LaneId> ends, open{lane.id};
-    auto const add = [](std::vector<LaneId>& list, LaneId id) {
-      if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
-    };
     for (std::size_t i = 0; i < open.size() && i < 64; ++i)
       for (auto const id : ahead ? map_.lane(open[i]).successors : map_.lane(open[i]).predecessors) {
-        bool const inside = is_valid(junction) && junction_of(id) == junction;
-        if (!inside) add(ends, id);
-        if (inside || (!is_valid(junction) && map_.lane(id).length() < is_short)) add(open, id);
+        bool const outside = !is_valid(junction) || junction_of(id) != junction;
+        auto& list = outside ? ends : open;
+        if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
       }
     return ends;
   }
@@ -139,11 +135,33 @@ class ConflictFinder {
                        [&](LaneId id) { return std::find(of_b.begin(), of_b.end(), id) != of_b.end(); });
   }
 
+  /// Whether the lanes start as one and part. Their ways may be cut into pieces; then the pieces overlap from the fork
+  /// up to this overlap without a break. O(pieces), at most 16.
+  [[nodiscard]] bool parts(Lane const& lane, Overlap const& overlap, int pieces = 16) const {
+    constexpr double close = 0.5;  // [m]
+    auto const& other = map_.lane(overlap.other);
+    if (share_ends(lane, other, false)) return true;
+    bool const at_begin = overlap.begin < close, at_other_begin = overlap.other_begin < close;
+    if (pieces == 0 || !(at_begin || at_other_begin)) return false;
+    auto const before = at_begin ? lane.predecessors : std::vector{lane.id},
+               other_before = at_other_begin ? other.predecessors : std::vector{other.id};
+    for (auto const id : before)
+      for (auto const& earlier : map_.lane(id).overlaps) {
+        if (std::find(other_before.begin(), other_before.end(), earlier.other) == other_before.end()) continue;
+        double const end = at_begin ? map_.lane(id).length() : overlap.begin,
+                     other_end = at_other_begin ? map_.lane(earlier.other).length() : overlap.other_begin;
+        if (earlier.kind == OverlapKind::split && std::abs(earlier.end - end) < close &&
+            std::abs(earlier.other_end - other_end) < close && parts(map_.lane(id), earlier, pieces - 1))
+          return true;
+      }
+    return false;
+  }
+
   /// Lanes that come from, or lead into, lanes side by side are near each other there too, and may cross.
   [[nodiscard]] OverlapKind kind_of(Lane const& lane, Overlap const& overlap) const {
     auto const& other = map_.lane(overlap.other);
     if (overlap.kind == OverlapKind::merge && share_ends(lane, other, true)) return OverlapKind::merge;
-    if (overlap.kind == OverlapKind::split && share_ends(lane, other, false)) return OverlapKind::split;
+    if (overlap.kind == OverlapKind::split && parts(lane, overlap)) return OverlapKind::split;
     return OverlapKind::crossing;
   }
 
