@@ -72,13 +72,15 @@ namespace detail {
   return recording;
 }
 
-/// The time headway [s] of a driver, or of the one that it wraps; infinity if it has none.
+/// The time headway [s] of a driver, or of the one that it wraps; the shortest if it is drawn; infinity if it has none.
 template <class Behavior>
 [[nodiscard]] double time_headway_of(Behavior const& behavior) {
   if constexpr (requires { behavior.law.time_headway; })
     return static_cast<double>(behavior.law.time_headway);
   else if constexpr (requires { behavior.nominal; })
     return time_headway_of(behavior.nominal);
+  else if constexpr (requires { behavior.time_headway.low; })  // drawn
+    return behavior.time_headway.low;
   else
     return std::numeric_limits<double>::infinity();
 }

@@ -39,23 +39,24 @@ namespace cambium {
 ///   and the approach rate stay until then. Ours knows what it has decided and not yet done, and sees how the others
 ///   accelerate (`HumanView`). With the paper's, drivers in town brake by more than 0.5 g ten times as often: while a
 ///   decision is under way, they decide on the same braking again.
-/// - The driver knows in advance what does not move (bends, limits, lines to stop at, the lane's end): it never
-///   accelerates more than it would alone on the road, without delay. In the paper the free road has the delay, too;
-///   the two differ only on a free road.
-/// - Where ways cross in a junction it decides without delay: drivers who give way look, and move slowly.
+/// - The driver knows in advance what does not move (bends, limits, lines to stop at, the lane's end): while it
+///   looks, it never accelerates more than it would alone on the road, without delay. In the paper the free road has
+///   the delay, too; the two differ only on a free road.
+/// - Where ways cross in a junction it decides without delay: drivers who give way look, and move slowly. That a queue
+///   fills the junction's exit it notices late.
 /// - Inattention: at random times the driver looks away and keeps its last decision, so that its reaction time grows by
 ///   as long as it looks away (frozen controls: Yang, Peng 2010, "Development of an errorable car-following driver
 ///   model"). It goes on steering. It looks away only while it expects not to brake for 2 s and does not creep, and
 ///   looks back, after 0.4 s on average, when it should brake. Both rules are ours: without them drivers collide about
 ///   ten times as often.
-/// - Noise of the pedals: a third such process is added to the acceleration, but never drives it over a line; below
-///   5 m/s it is the less the slower it drives. 0.21 m/s^2, correlated over 1.3 s, are those of drivers on highD's
-///   motorways (Zhang, Sun 2022, "Bayesian calibration of the intelligent driver model").
+/// - Noise of the pedals: a third such process is added to the acceleration, but never drives it over a line while it
+///   looks; below 5 m/s it is the less the slower it drives. 0.21 m/s^2, correlated over 1.3 s, are those of drivers on
+///   highD's motorways (Zhang, Sun 2022, "Bayesian calibration of the intelligent driver model").
 ///
 /// Without reaction time, errors, inattention and noise it drives as the nominal behaviour, to the last bit. The
 /// behaviour must keep the vehicle in lanes; it may change them, on the errors of the moment. Reaction times about as
-/// long as the time headway make platoons unstable, and drivers collide; so do inattentive ones. O(1) beside three
-/// plans of the nominal behaviour.
+/// long as the time headway make platoons unstable, and drivers collide; so do inattentive ones. O(reaction time / dt)
+/// beside three plans of the nominal behaviour, four in steps in which it looks away.
 template <BehaviorModel Nominal>
 requires std::is_same_v<WorkspaceOf<Nominal>, NoWorkspace>
 struct HumanDriver {
