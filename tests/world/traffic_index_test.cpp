@@ -669,6 +669,23 @@ TEST_CASE("a vehicle that only reaches over into a merging lane does not count a
   CHECK(ramp_view.ahead()->agent == beside);  // whom those behind it in the ramp's lane follow
 }
 
+TEST_CASE("who crosses a merging lane on foot is ahead of those in that lane, but not of those in the lane beside") {
+  auto const map = own_map("lane_drop.xodr");
+  auto const place = [&map](int lane, double s) { return map->lane(map->find_lane("1", s, lane)).path.pose(s); };
+  Sim world(map);
+  auto const enter = [&](cb::geometry::Pose const& pose) {
+    return world.add({.position = pose.position(), .heading = pose.heading});
+  };
+  auto const beside = enter(place(-2, 330)), in_lane = enter(place(-3, 330));
+  auto const at = place(-3, 350);
+  std::vector<cb::geometry::Point> const way{at.position(), at.position() + cb::geometry::Point(0.0, 5.0)};
+  auto const walker = world.add(
+      {.position = way.front(), .shape = cb::geometry::pedestrian(), .road = cb::map::build_free_corridor(*map, way)});
+  CHECK_FALSE(world.observe(beside).ahead());
+  REQUIRE(world.observe(in_lane).ahead());
+  CHECK(world.observe(in_lane).ahead()->agent == walker);
+}
+
 TEST_CASE("the agents around a place are in its lane corridor, not in lanes whose coordinates follow") {
   auto const map = own_map("intersection_4way.xodr");
   cb::World<cb::BehaviorSet<cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack> world(map);

@@ -61,9 +61,9 @@ struct ReachingEntries {
 ///
 /// The neighbour ahead (behind) is the road user with the smallest gap among those whose reference point is ahead of
 /// (behind) the searching agent's. For objects, the middle of each part counts as the reference point. The search
-/// covers the corridor and its feeders: lanes that merge in, or have just split off. Usually the next entry has the
-/// smallest gap. If vehicles of different lengths stand side by side, a later entry may reach nearer (`crowded_`), and
-/// the search continues as far as any vehicle reaches back.
+/// covers the corridor and its feeders: lanes that merge in, or have just split off. People on foot do not merge.
+/// Usually the next entry has the smallest gap. If vehicles of different lengths stand side by side, a later entry may
+/// reach nearer (`crowded_`), and the search continues as far as any vehicle reaches back.
 class TrafficIndex {
  public:
   /// Updates the index for `count` agents. `entry_of(slot, list)` returns the agent's `TrafficEntry` (position
@@ -358,11 +358,19 @@ class TrafficIndex {
       double const s = feeder.image(entry.position), way = sign * (s - query.s);
       if (query.skips(entry, is_object, way)) continue;
       if (query.merging == Merging::by_rule && feeder.is_up_to_rule(s + entry.front)) continue;
+      if (!is_object && feeder.is_still_to_merge() && is_on_foot(entry)) continue;
       bool const is_later = sign > 0 ? entry.slot > query.slot : entry.slot < query.slot;
       if (!(way > 0.0 || (way == 0.0 && is_later))) continue;
       if (way > query.distance || gap_to<sign>(s, longest, query, feeder) >= best.gap) return;
       best.offer(entry, s, gap_to<sign>(s, walk.reach_back(), query, feeder));
     }
+  }
+
+  /// Whether somebody crosses the lane that it is in, and does not merge. O(log n).
+  [[nodiscard]] bool is_on_foot(TrafficEntry const& entry) const {
+    constexpr double small = 1.0;  // [m]
+    return entry.front + entry.rear < small &&
+           std::binary_search(reaching_.off_lanes.begin(), reaching_.off_lanes.end(), entry.slot);
   }
 
   /// Whether entry `i` lies in its agent's own lane, not in another lane that the agent reaches into.
