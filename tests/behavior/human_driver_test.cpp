@@ -322,8 +322,10 @@ TEST_CASE("from vehicle to vehicle a human view finds each one once, whatever it
     for (double const way : {0.0, 3.0, 14.0, 24.0}) {
       cb::HumanView const human(view, {.gap_factor = gap_factor, .reach = way / 12.0, .way = way, .speed = 12.0});
       std::vector<cb::AgentId> found;
-      for (auto at = human.place(); auto const next = human.ahead(at); at.s = next->s + 0.01) {
+      auto at = human.place();
+      while (auto const next = human.ahead(at)) {
         found.push_back(next->agent);
+        at.s = next->s + 0.01;
         REQUIRE(found.size() < 9);
       }
       CHECK(found == others);
