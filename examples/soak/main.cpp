@@ -300,7 +300,7 @@ int main(int argc, char** argv) {
   program
       .add_option(
           "--map", settings.map_file,
-          "a map (.xodr, .osm, .xml); default: all own ones, and ten of the corpus in the folder CAMBIUM_CORPUS, or in "
+          "a map (.xodr, .osm, .xml); default: all own ones, and nine of the corpus in the folder CAMBIUM_CORPUS, or in "
           "../shared")
       ->type_name("FILE")
       ->check(not_empty());

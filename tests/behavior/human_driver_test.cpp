@@ -334,6 +334,11 @@ TEST_CASE("from vehicle to vehicle a human view finds each one once, whatever it
     }
 }
 
+TEST_CASE("a step of any length takes the same time") {
+  auto world = platoon(Swinging{}, precise(0.6, true), 1);
+  for (double const dt : {0.1, 1e-9, 1e-14, 1e-300, 0.1}) CHECK(world.step(dt));
+}
+
 TEST_CASE("an oncoming vehicle is expected to keep its acceleration along its own heading") {
   Traffic<Human, cb::StaticTrajectory> world(straight_road(1, 500.0));
   auto const id = add(world, 1, 50.0, 12.0, precise(0.6, true));

@@ -173,4 +173,5 @@ TEST_CASE("sources are where traffic can enter a map; wrong ones are refused wit
   refuse({}, "no lane of this map");
   refuse({.lane = find_sources(*road).at(0).lane, .per_hour = 0.0}, "agents per hour");
   refuse({.lane = find_sources(*road).at(0).lane, .per_hour = std::nan("")}, "agents per hour");
+  refuse({.lane = find_sources(*road).at(0).lane, .per_hour = 1e300}, "agents per hour");
 }

@@ -38,9 +38,10 @@ CAMBIUM_COLD void check_sources(Map const& map, std::vector<TrafficSource> const
     auto const where = "traffic source " + std::to_string(i);
     if (!source.way && index_of(source.lane) >= map.lanes().size())
       throw WorldError(where, "it has no lane of this map, and no way", "take it as find_sources returns it");
-    if (!(source.per_hour > 0.0))
-      throw WorldError(where, "its demand is " + std::to_string(source.per_hour) + " agents per hour",
-                       "give one above 0, or leave the source out");
+    constexpr double most = 1e9;  // [1/h]
+    if (!(source.per_hour > 0.0) || (source.per_hour > most && source.per_hour != TrafficSource::saturated))
+      throw WorldError(where, "its demand is " + detail::rounded_text(source.per_hour) + " agents per hour",
+                       "give one above 0 and up to 1e9, or TrafficSource::saturated, or leave the source out");
   }
 }
 

@@ -55,8 +55,8 @@ namespace cambium {
 ///
 /// Without reaction time, errors, inattention and noise it drives as the nominal behaviour, to the last bit. The
 /// behaviour must keep the vehicle in lanes; it may change them, on the errors of the moment. Reaction times about as
-/// long as the time headway make platoons unstable, and drivers collide; so do inattentive ones. O(reaction time / dt)
-/// beside three plans of the nominal behaviour, four in steps in which it looks away.
+/// long as the time headway make platoons unstable, and drivers collide; so do inattentive ones. O(1) beside
+/// three plans of the nominal behaviour, four in steps in which it looks away.
 template <BehaviorModel Nominal>
 requires std::is_same_v<WorkspaceOf<Nominal>, NoWorkspace>
 struct HumanDriver {
@@ -252,8 +252,8 @@ struct HumanDriver {
   void foresee(Memory driven, double speed, double alone, double dt, HumanEstimate& estimate) const {
     estimate.reach = reaction_time;
     estimate.speed = speed;
-    for (double rest = reaction_time; rest > 1e-9; rest -= dt) {
-      double const step = std::min(dt, rest), acceleration = std::min(in_effect(driven, dt), alone);
+    for (double rest = reaction_time, each = interval(dt); rest > 1e-9; rest -= each) {
+      double const step = std::min(each, rest), acceleration = std::min(in_effect(driven, dt), alone);
       auto const motion = ConstantAcceleration{.acceleration = acceleration}.motion(estimate.speed, step);
       estimate.way += motion.distance;
       estimate.speed = motion.speed;
