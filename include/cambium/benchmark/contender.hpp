@@ -217,20 +217,9 @@ class RunJudge {
     }
     auto const pair = AnyCollision{}.pair(world);
     bool const others = pair && pair->first != id(world) && pair->second != id(world);
-    if (pair && !result_.collision) drive_through(world);
+    if (pair && !result_.collision) note_drive_through(world);
     result_.others_collided += others && !others_collide_;
     others_collide_ = others;
-  }
-
-  /// A collision between two frames counts, too. Nobody is at fault: how they met is not known.
-  void drive_through(World const& world) {
-    if (!in_traffic(world, ego_)) return;
-    auto const own = motion_at(world, ego_);
-    for (Slot slot{}; index_of(slot) < world.size() && !result_.collision; ++slot) {
-      if (slot == ego_ || !in_traffic(world, slot) || !geometry::intersects(own, motion_at(world, slot))) continue;
-      result_.collision = true;
-      result_.hit = world.roster().agents[slot].id;
-    }
   }
 
   [[nodiscard]] RunResult& result() { return result_; }
@@ -244,6 +233,17 @@ class RunJudge {
   }
 
  private:
+  /// A collision between two frames counts, too. Nobody is at fault: how they met is not known.
+  void note_drive_through(World const& world) {
+    if (!in_traffic(world, ego_)) return;
+    auto const own = motion_at(world, ego_);
+    for (Slot slot{}; index_of(slot) < world.size() && !result_.collision; ++slot) {
+      if (slot == ego_ || !in_traffic(world, slot) || !geometry::intersects(own, motion_at(world, slot))) continue;
+      result_.collision = true;
+      result_.hit = world.roster().agents[slot].id;
+    }
+  }
+
   struct Speed {
     [[nodiscard]] double operator()(World const& world, Slot slot) const {
       return world.frame().agents[slot].state.speed;

@@ -107,7 +107,7 @@ class HumanView : public View {
   /// is the first one found. O(those found).
   template <class Find>
   [[nodiscard]] std::optional<RoadUser> next(map::LanePlace const& from, int sign, Find const& find) const {
-    constexpr double rounding = 1e-7, next = 1e-6, least = 0.1;  // [m]
+    constexpr double rounding = 1e-7, beyond_it = 1e-6, least = 0.1;  // [m]
     if (estimate_.alone) return std::nullopt;
     if (is_plain()) return find(from);
     auto const start = moved(from, -estimate_.way);
@@ -115,7 +115,8 @@ class HumanView : public View {
     for (auto at = start;;) {
       auto user = find(at);
       if (!user) return user;
-      double const step = std::max(sign * (user->s - at.s) + next, least);  // an observer that errs may see it behind
+      double const step =
+          std::max(sign * (user->s - at.s) + beyond_it, least);  // an observer that errs may see it behind
       user->gap += sign * (at.s - start.s);
       user = seen(*user, sign, way);
       if (std::abs(way) < rounding || sign * (user->s - from.s) > 0.0) return user;

@@ -69,9 +69,7 @@ inline void add_ways_beyond(Map const& map, Lane const& lane, bool ahead, double
       double const to = ahead ? std::min(next.length(), until - way.far_end) : next.length();
       ConflictWay stretch{next.index_begin + from, next.index_begin + to, ahead ? way.far_end : far_end + from};
       Way reached{id, far_end, way.arrival};
-      if (!ahead) {
-        set_times(stretch, next.path, from, to, std::clamp(conflict - far_end, from, to), reached.arrival);
-      }
+      if (!ahead) set_times(stretch, next.path, from, to, std::clamp(conflict - far_end, from, to), reached.arrival);
       ways.push_back(stretch);
       open.push_back(reached);
     }
