@@ -38,8 +38,10 @@ struct Population {
     using P = Population;
     return parameter_list(
         parameter("desired_speed", &P::desired_speed, "m/s", {}, "where there is no limit"),
-        parameter("speed_factor", &P::speed_factor, "-", {},
-                  "speed on a free road, in shares of the limit; drawn together with desired_speed: fast drivers are fast at any limit"),
+        parameter(
+            "speed_factor", &P::speed_factor, "-", {},
+            "speed on a free road, in shares of the limit; drawn together with desired_speed: fast drivers are fast "
+            "at any limit"),
         parameter("time_headway", &P::time_headway, "s", {}, "time gap kept to the leader"),
         parameter("minimum_gap", &P::minimum_gap, "m", {}, "gap kept at standstill"),
         parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", {}, "from rest on a free road"),

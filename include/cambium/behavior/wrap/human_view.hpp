@@ -115,8 +115,8 @@ class HumanView : public View {
     for (auto at = start;;) {
       auto user = find(at);
       if (!user) return user;
-      double const step =
-          std::max(sign * (user->s - at.s) + beyond_it, least);  // an observer that errs may see it behind
+      // An observer that errs may see it behind.
+      double const step = std::max(sign * (user->s - at.s) + beyond_it, least);
       user->gap += sign * (at.s - start.s);
       user = seen(*user, sign, way);
       if (std::abs(way) < rounding || sign * (user->s - from.s) > 0.0) return user;
