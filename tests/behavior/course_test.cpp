@@ -61,3 +61,18 @@ TEST_CASE("a plan along a course stays on it for any motion, and goes straight o
     CHECK(result.action.steering == plan.action.steering);
   }
 }
+
+TEST_CASE("a plan along a course to a place beside it turns no farther than the course does") {
+  Sim world(straight_road(1, 500));
+  auto const view = world.observe(world.add({.position = {10, -1.75}, .speed = 1}));
+  auto end = view.state();
+  end.x += 0.01;
+  end.y += 0.0002;
+  end.heading += 0.001;
+  cb::Plan<decltype(view)> plan;
+  plan.trajectory.push_back(end);
+  for (double const share : {0.1, 0.5, 0.9}) {
+    auto const at = cb::detail::plan_along_course(view, plan, {.distance = share * 0.01, .speed = 1.0}, 0.01);
+    CHECK(at.trajectory.front().heading == doctest::Approx(share * 0.001).epsilon(1e-6));
+  }
+}

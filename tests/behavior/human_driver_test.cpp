@@ -375,6 +375,24 @@ TEST_CASE("a human driver waits for a pedestrian ahead and passes one beside it"
   }
 }
 
+TEST_CASE("a human that creeps through a bend keeps its lane") {
+  Traffic<cb::HumanDriver<cb::UrbanDriver>, Swinging> world(road_with_bend(20.0));
+  auto const& lane = lane_of(world.map(), 1);
+  auto const leader = enter(world, lane, 225.0, {.behavior = Swinging{.speed = 0.03, .amplitude = 0.02}});
+  auto const human = enter(world, lane, 218.0, {.behavior = cb::HumanDriver<cb::UrbanDriver>{}});
+  REQUIRE(world.observe(leader).place().s > 220.0);
+  double most_aslant = 0.0, farthest = 0.0;
+  for (int k = 0; k < 1500; ++k) {
+    REQUIRE(world.step(0.1));
+    auto const at = world.observe(human).place();
+    most_aslant = std::max(most_aslant, std::abs(at.heading_error));
+    farthest = std::max(farthest, std::abs(at.lateral));
+  }
+  CHECK(world.observe(human).place().s > 220.0);
+  CHECK(most_aslant < 0.03);
+  CHECK(farthest < 0.03);
+}
+
 TEST_CASE("a driver that looks away notices later that its leader brakes") {
   auto inattentive = precise(0.6, true);
   inattentive.attentive = 3.0;

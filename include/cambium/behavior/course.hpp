@@ -15,19 +15,16 @@ template <MotionState S>
   return portable::hypot(b.x - a.x, b.y - a.y) * (1.0 + turn * turn / 24.0);
 }
 
-/// Sets position and heading of `state` at share `u` of the `way` [m] from `a` to `b`, on the cubic Hermite curve
-/// through both along their headings.
+/// Sets position and heading of `state` at share `u` of the `way` [m] from `a` to `b`: on the cubic Hermite curve
+/// through both along their headings, and turned evenly. (The curve's tangent would overshoot where the two lie a
+/// little beside each other's course, as along a polyline. From step to step such errors would add up.)
 template <MotionState S>
 void place_between(S const& a, S const& b, double way, double u, S& state) {
   auto const from = portable::sin_cos(a.heading), to = portable::sin_cos(b.heading);
-  double const dx = b.x - a.x, dy = b.y - a.y, w = u * u * (3.0 - 2.0 * u);
-  double const p = u * (1.0 - u) * (1.0 - u) * way, q = -u * u * (1.0 - u) * way;
-  state.x = a.x + w * dx + p * from.cos + q * to.cos;
-  state.y = a.y + w * dy + p * from.sin + q * to.sin;
-  double const slope = 6.0 * u * (1.0 - u), leave = (1.0 - u) * (1.0 - 3.0 * u) * way, come = u * (3.0 * u - 2.0) * way;
-  double const tangent_x = slope * dx + leave * from.cos + come * to.cos,
-               tangent_y = slope * dy + leave * from.sin + come * to.sin;
-  state.heading = a.heading + geometry::angle_difference(portable::atan2(tangent_y, tangent_x), a.heading);
+  double const w = u * u * (3.0 - 2.0 * u), p = u * (1.0 - u) * (1.0 - u) * way, q = -u * u * (1.0 - u) * way;
+  state.x = a.x + w * (b.x - a.x) + p * from.cos + q * to.cos;
+  state.y = a.y + w * (b.y - a.y) + p * from.sin + q * to.sin;
+  state.heading = a.heading + u * geometry::angle_difference(b.heading, a.heading);
 }
 
 /// Length [m] of the course from `start` through the states of the plan.
