@@ -234,6 +234,40 @@ TEST_CASE("a change is aborted when a vehicle approaches in the new lane") {
   CHECK(aborted >= 2);
 }
 
+TEST_CASE("who gives up a change at a standstill swings into nobody beside it, and gets away") {
+  auto const truck = cb::geometry::truck();
+  for (double const side : {1.0, -1.0})
+    for (double const end : {100.0, 102.0, 104.0, 106.0}) {  // front end of the truck beside [m]
+      CAPTURE(side);
+      CAPTURE(end);
+      Sim world(support::straight_road(2, 500.0));
+      double const lane = -3.5 - 1.75 * side;
+      auto const driver = add(world, side > 0.0 ? 2 : 1, 100.0, 0.0, mobil(14.0));
+      world.add({.position = {end - truck.front, -3.5 + 1.75 * side},
+                 .speed = 0.0,
+                 .shape = truck,
+                 .behavior = cb::ConstantAcceleration{}});
+      auto state = world.state(driver);
+      state.y = lane + 0.25 * side;
+      state.heading = 0.22 * side;
+      world.set_state(driver, state);
+      cb::Mobil::Memory memory;
+      auto const home = world.observe(driver).place().corridor;
+      memory.lateral.change = {.target = side > 0.0 ? cb::CorridorId{0} : cb::CorridorId{1},
+                               .left = 12.0f,
+                               .bend = static_cast<float>(0.09 * side)};
+      for (int k = 0; k < 100; ++k) {
+        auto const plan = mobil(14.0).plan(world.observe(driver), memory, 0.2);
+        REQUIRE(plan.status == cb::PlanStatus::valid);
+        if (k == 0) REQUIRE(memory.lateral.change.target == home);
+        world.set_state(driver, plan.trajectory.back());
+        REQUIRE(collisions(world) == 0);
+        if (world.state(driver).x > 130.0) break;
+      }
+      CHECK(world.state(driver).x > 130.0);
+    }
+}
+
 TEST_CASE("a vehicle that leaves its lane hides its leader from its follower, but not long enough for a collision") {
   int hidden = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {

@@ -334,12 +334,14 @@ struct ChangeLanes {
     return is_safe(view, limits, option, abort_deceleration);
   }
 
-  /// Turns back if the way back stays within the old lane. The rest that follows is random, see above.
+  /// Turns back if the way back stays within the old lane; a vehicle that hardly moves straightens its wheels first,
+  /// else its front end would swing out farther. The rest that follows is random, see above.
   template <class View>
   CAMBIUM_NOINLINE void abort(View const& view, double speed, Memory& memory) const {
     constexpr std::uint32_t purpose = 0x4c43u;
     auto const& at = view.place();
-    auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, memory.change.bend);
+    float const bend = speed < passed_below ? 0.0f : memory.change.bend;
+    auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, bend);
     if (!detail::stays_within_lane(view, back)) return;
     auto random = view.random(purpose);
     memory.change = back;
