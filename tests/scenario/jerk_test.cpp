@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../support/maps.hpp"
+#include "../support/scale.hpp"
 #include "cambium/cambium.hpp"
 #include "cambium/scenario/junction_site.hpp"
 
@@ -54,19 +55,33 @@ class Jerks {
   std::vector<double> all_;
 };
 
-/// A driver that desires `speed` [m/s].
-template <class D>
-D driver(double speed, double jerk) {
-  D made;
-  made.law.desired_speed = speed;
-  made.jerk = jerk;
-  return made;
-}
+/// Who drives.
+struct Who {
+  double jerk = 2.5;                   ///< the bound of drivers with default parameters [m/s^3]
+  Population const* people = nullptr;  ///< from whom drivers are drawn instead, each with its own bound
+  geometry::Shape shape = geometry::car();
+  RandomStream random{5, 0, 0};
 
-template <class D>
-typename Sim<D>::AgentSpec at(double x, double speed, D const& behavior, int lane = 1) {
-  return {.position = {x, 1.75 - 3.5 * lane}, .speed = speed, .behavior = behavior};
-}
+  /// A driver that desires `speed` [m/s].
+  template <class D>
+  [[nodiscard]] D driver(double speed) {
+    D made;
+    made.jerk = jerk;
+    if constexpr (requires(presets::Temperament one) { one.of(made); })
+      if (people != nullptr) made = people->draw(random).of(made);
+    made.law.desired_speed = speed;
+    return made;
+  }
+
+  /// Such a driver on a road, with its front end where that of a car at `x` is.
+  template <class D>
+  [[nodiscard]] typename Sim<D>::AgentSpec at(double x, double speed, double desired, int lane = 1) {
+    return {.position = {x + geometry::car().front - shape.front, 1.75 - 3.5 * lane},
+            .speed = speed,
+            .shape = shape,
+            .behavior = driver<D>(desired)};
+  }
+};
 
 template <class World>
 void drive(World& world, double until, double dt, Jerks& jerks) {
@@ -79,10 +94,10 @@ void drive(World& world, double until, double dt, Jerks& jerks) {
 
 /// Follows one that brakes gently from 15 to 9 m/s and accelerates again.
 template <class D>
-void follow(double jerk, double dt, Jerks& jerks) {
+void follow(Who who, double dt, Jerks& jerks) {
   Sim<D> world(support::straight_road(1, 2000.0));
   auto const first = world.add({.position = {160, -1.75}, .speed = 15.0, .behavior = ConstantAcceleration{}});
-  for (int i = 0; i < 4; ++i) world.add(at(130.0 - 30.0 * i, 15.0, driver<D>(20.0, jerk)));
+  for (int i = 0; i < 4; ++i) world.add(who.at<D>(130.0 - 30.0 * i, 15.0, 20.0));
   for (auto const& [acceleration, until] :
        {std::pair{0.0, 10.0}, {-1.5, 14.0}, {0.0, 25.0}, {1.2, 30.0}, {0.0, 40.0}}) {
     world.set_behavior(first, ConstantAcceleration{.acceleration = acceleration});
@@ -92,11 +107,11 @@ void follow(double jerk, double dt, Jerks& jerks) {
 
 /// Comes to the end of a queue; its first one starts, and all follow.
 template <class D>
-void queue(double jerk, double dt, Jerks& jerks) {
+void queue(Who who, double dt, Jerks& jerks) {
   Sim<D> world(support::straight_road(1, 1000.0));
   auto const first = world.add({.position = {300, -1.75}, .speed = 0.0, .behavior = ConstantAcceleration{}});
-  for (int i = 0; i < 3; ++i) world.add(at(290.0 - 8.0 * i, 0.0, driver<D>(15.0, jerk)));
-  world.add(at(60.0, 14.0, driver<D>(14.0, jerk)));
+  for (int i = 0; i < 3; ++i) world.add(who.at<D>(292.0 - (who.shape.length() + 3.5) * i, 0.0, 15.0));
+  world.add(who.at<D>(60.0, 14.0, 14.0));
   drive(world, 30.0, dt, jerks);
   world.set_behavior(first, ConstantAcceleration{.acceleration = 1.2, .highest_speed = 12.0});
   drive(world, 50.0, dt, jerks);
@@ -104,71 +119,77 @@ void queue(double jerk, double dt, Jerks& jerks) {
 
 /// One who is as fast cuts in, 1 s ahead.
 template <class D>
-void cut_in(double jerk, double dt, Jerks& jerks) {
+void cut_in(Who who, double dt, Jerks& jerks) {
   Sim<D> world(support::straight_road(1, 2000.0));
-  auto const id = world.add(at(50.0, 20.0, driver<D>(20.0, jerk)));
+  auto const id = world.add(who.at<D>(50.0, 20.0, 20.0));
   drive(world, 5.0, dt, jerks);
-  double const length = geometry::car().length();
-  world.add(
-      {.position = {world.state(id).x + length + 20.0, -1.75}, .speed = 20.0, .behavior = ConstantAcceleration{}});
+  world.add({.position = {world.state(id).x + who.shape.front + geometry::car().rear + 20.0, -1.75},
+             .speed = 20.0,
+             .behavior = ConstantAcceleration{}});
   drive(world, 30.0, dt, jerks);
 }
 
 /// Drivers of different speeds on three lanes.
 template <class D>
-void change_lanes(double jerk, double dt, Jerks& jerks) {
+void change_lanes(Who who, double dt, Jerks& jerks) {
   Sim<D> world(support::straight_road(3, 2500.0));
   RandomStream random(7, 0, 0);
   for (int i = 0; i < 24; ++i) {
-    auto one = driver<D>(17.0 + 12.0 * uniform01(random), jerk);
-    if constexpr (requires { one.lateral.rule.keep_right; }) one.lateral.rule.keep_right = i % 2 == 1;
-    world.add(at(50.0 + 40.0 * (i / 3) + 8.0 * uniform01(random), 18.0, one, 1 + i % 3));
+    double const desired = 17.0 + 12.0 * uniform01(random), x = 50.0 + 40.0 * (i / 3) + 8.0 * uniform01(random);
+    auto one = who.at<D>(x, 18.0, desired, 1 + i % 3);
+    if constexpr (requires(D one) { one.lateral.rule.keep_right; })
+      std::get<D>(one.behavior).lateral.rule.keep_right = i % 2 == 1;
+    world.add(one);
   }
   drive(world, 50.0, dt, jerks);
 }
 
 /// Stops at a red light and goes at green; the second one comes when it turns yellow.
 template <class D>
-void light(double jerk, double dt, Jerks& jerks) {
+void light(Who who, double dt, Jerks& jerks) {
   auto const map = support::road_with_signal("1000001");
   for (double const begin : {60.0, 100.0, 110.0, 120.0}) {
     Sim<D> world(map);
     world.set_light(map->lights().front().id, {.cycle = 60.0, .green_begin = 30.0, .green_end = 62.0, .yellow = 3.0});
-    world.add(at(begin, 13.0, driver<D>(13.0, jerk)));
-    world.add(at(begin - 40.0, 13.0, driver<D>(13.0, jerk)));
+    world.add(who.at<D>(begin, 13.0, 13.0));
+    world.add(who.at<D>(begin - 40.0, 13.0, 13.0));
     drive(world, 45.0, dt, jerks);
   }
 }
 
 /// Stops at a stop sign, one after the other.
 template <class D>
-void stop_sign(double jerk, double dt, Jerks& jerks) {
+void stop_sign(Who who, double dt, Jerks& jerks) {
   Sim<D> world(support::road_with_signal("206"));
-  for (int i = 0; i < 3; ++i) world.add(at(100.0 - 30.0 * i, 13.0, driver<D>(13.0, jerk)));
+  for (int i = 0; i < 3; ++i) world.add(who.at<D>(100.0 - 30.0 * i, 13.0, 13.0));
   drive(world, 50.0, dt, jerks);
 }
 
 /// Crosses a junction, also turning, before which nobody else is.
 template <class D>
-void turn(double jerk, double dt, Jerks& jerks) {
+void turn(Who who, double dt, Jerks& jerks) {
   auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
+  int driven = 0;
   RandomStream random(3, 0, 0);
   for (auto const lane : site.entrances) {
     Sim<D> world(site.map);
     auto const route = site.random_route(lane, random);
+    if (!fits_route(*site.map, route, who.shape)) continue;
+    ++driven;
     auto const pose = site.map->lane(lane).path.pose(10.0);
-    auto spec = at(0.0, 10.0, driver<D>(13.0, jerk));
+    auto spec = who.at<D>(0.0, 10.0, 13.0);
     spec.position = pose.position();
     spec.heading = pose.heading;
     spec.route = route;
     world.add(spec);
     drive(world, 25.0, dt, jerks);
   }
+  REQUIRE(driven > 0);
 }
 
 struct Situation {
   std::string name;
-  void (*drive)(double jerk, double dt, Jerks& jerks);
+  void (*drive)(Who who, double dt, Jerks& jerks);
 };
 
 template <class D>
@@ -183,12 +204,12 @@ std::vector<Situation> at_junctions() {
   return all;
 }
 
-void check_smooth(std::vector<Situation> const& situations) {
+void check_smooth(std::vector<Situation> const& situations, Who const& who = {}) {
   for (double const dt : {0.05, 0.1, 0.2}) {
     Jerks of_all;
     for (auto const& situation : situations) {
       Jerks jerks;
-      situation.drive(2.5, dt, jerks);
+      situation.drive(who, dt, jerks);
       INFO(situation.name, ", dt ", dt, ": above 3 m/s^3 ", 100.0 * jerks.share_above(3.0), " %");
       CHECK(jerks.largest() <= 10.0);
       CHECK(jerks.share_above(3.0) < 0.03);
@@ -213,11 +234,21 @@ TEST_CASE("drivers are smooth at junctions, lights and stop signs too") {
   check_smooth(at_junctions<BasicUrbanDriver<Idm>>());
 }
 
+TEST_CASE("so are people in cars and trucks") {
+  auto const cars = presets::town_cars(), trucks = presets::town_trucks();
+  for (std::uint64_t seed = 1; seed <= support::runs(20); ++seed) {
+    CAPTURE(seed);
+    check_smooth(at_junctions<UrbanDriver>(), {.people = &cars, .random = RandomStream(seed, 0, 0)});
+    check_smooth(at_junctions<UrbanDriver>(),
+                 {.people = &trucks, .shape = geometry::truck(), .random = RandomStream(seed, 1, 0)});
+  }
+}
+
 TEST_CASE("without the bound the same situations are not smooth") {
   int rough = 0;
   for (auto const& situation : at_junctions<UrbanDriver>()) {
     Jerks jerks;
-    situation.drive(1e6, 0.1, jerks);
+    situation.drive({.jerk = 1e6}, 0.1, jerks);
     rough += jerks.share_above(3.0) >= 0.01 || jerks.largest() > 10.0;
   }
   CHECK(rough >= 4);

@@ -10,6 +10,7 @@
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/law/follow_motion.hpp"
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/constants.hpp"
 #include "cambium/core/described.hpp"
 
 namespace cambium {
@@ -141,10 +142,10 @@ class Limits {
   [[nodiscard]] LongitudinalMotion<double> motion(double dt) const { return response_.motion(constraint_, dt); }
   /// `motion` over `dt` [s], or the bound if that is shorter, as smoothly as the driver can, see
   /// `bounded_acceleration`; without that where a constraint comes so near that braking evenly takes half of what the
-  /// driver can brake.
+  /// driver can brake. A driver that stops behind one that stands takes the brake back before it stands itself.
   [[nodiscard]] LongitudinalMotion<double> within(LongitudinalMotion<double> const& motion, double dt) const {
-    auto const wanted = nearer(motion, bound_);
-    if (!jerk_bound.matters() || is_urgent()) return wanted;
+    if (!jerk_bound.matters() || is_urgent()) return nearer(motion, bound_);
+    auto const wanted = nearer(softly(motion, dt), bound_);
     double const v = response_.speed(), a = (wanted.speed - v) / dt;
     double const smooth =
         bounded_acceleration(a, v, law_->comfortable_deceleration, law_->lowest_acceleration, jerk_bound, dt);
@@ -167,6 +168,17 @@ class Limits {
   } place_to_wait{};  ///< it brakes harder than `jerk_bound` permits rather than be unable to stop there
 
  private:
+  /// `motion`, or the longer one that ends softly at a standstill, if the constraint stands and enough of the gap is
+  /// left.
+  [[nodiscard]] LongitudinalMotion<double> softly(LongitudinalMotion<double> const& motion, double dt) const {
+    if (constraint_.speed > standing_speed) return motion;
+    double const least = std::max(0.5, 0.5 * law_->minimum_gap);  // [m]
+    double const v = response_.speed(), end = v + dt * detail::approach(v, 0.0, jerk_bound, dt);
+    if (!(motion.speed < end)) return motion;
+    return soft_stop(v, jerk_bound.planned()) + least < constraint_.gap
+               ? LongitudinalMotion<double>{0.5 * (v + end) * dt, end}
+               : motion;
+  }
   [[nodiscard]] bool is_urgent() const {
     double const closing = response_.speed() - constraint_.speed;
     return closing > 0.0 && closing * closing > -law_->lowest_acceleration * constraint_.gap;

@@ -57,7 +57,9 @@ struct Signals {
     double const comfortable = law.comfortable_deceleration, fastest = speed + law.maximum_acceleration * dt;
     double const braking = stopping_distance(fastest, law.maximum_acceleration, comfortable, limits.jerk_bound);
     double const look_ahead = std::max(least, fastest * dt + braking + beyond);
-    auto const stop = stop_at(view, view.place().s + view.shape().front, speed, look_ahead, memory.stopped_at);
+    double const soft_way = limits.jerk_bound.matters() ? soft_stop(speed, limits.jerk_bound.planned()) : 0.0;
+    auto const stop =
+        stop_at(view, view.place().s + view.shape().front, speed, soft_way, look_ahead, memory.stopped_at);
     limits.is_at_light = stop.is_light && speed < standing_speed;
     if (std::isfinite(stop.distance)) limits.stop_within(stop.distance, comfortable, dt);
   }
@@ -73,10 +75,12 @@ struct Signals {
     return cambium::can_stop(speed, distance, safe_deceleration);
   }
 
-  /// With its front end at `front` [m], for signals within `look_ahead` [m]; before the margin if it can. `stopped_at`
-  /// [m]: see `Memory`.
+  /// With its front end at `front` [m], for signals within `look_ahead` [m]: before the margin if it can, and a little
+  /// farther where it stops softly then, within `soft_way` [m]. `stopped_at` [m]: see `Memory`.
   template <class View>
-  [[nodiscard]] Stop stop_at(View const& view, double front, double speed, double look_ahead, float& stopped_at) const {
+  [[nodiscard]] Stop stop_at(View const& view, double front, double speed, double soft_way, double look_ahead,
+                             float& stopped_at) const {
+    constexpr double closest = 0.1;  // [m]
     Stop stop;
     for (auto const& signal : view.corridor().signals) {
       double const to_line = signal.line - front;
@@ -90,8 +94,10 @@ struct Signals {
         if (passes(view, signal.light, speed, to_line)) continue;
         stop.is_light = true;
       }
-      double const before = can_stop(speed, to_line - stop_margin) ? stop_margin : 0.0;
-      stop.distance = std::min(stop.distance, std::max(0.0, to_line - before));
+      double const before = can_stop(speed, to_line - stop_margin) ? stop_margin : std::min(stop_margin, 2.0 * closest);
+      double const least = speed > 0.0 && to_line <= closest ? to_line : 0.0;
+      double const way = std::max({to_line - before, std::min(soft_way, to_line - closest), least});
+      stop.distance = std::min(stop.distance, way);
     }
     return stop;
   }

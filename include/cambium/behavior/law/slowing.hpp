@@ -54,6 +54,10 @@ struct SlowingDistance {
   return {distance, time + slower / hardest, by_acceleration};
 }
 
+/// The distance in which a vehicle of `speed` [m/s] stops that brakes with sqrt(2 `jerk` speed) and takes the brake
+/// back by `jerk` [m/s^3], to 0 where it stands.
+[[nodiscard]] inline double soft_stop(double speed, double jerk) { return speed * std::sqrt(2.0 * speed / jerk) / 3.0; }
+
 /// The acceleration closest to `wanted` [m/s^2] that the jerk permits in a step of `dt` [s] at `speed` [m/s]. Where
 /// more than the `comfortable` deceleration is wanted, or was, it changes the faster, as that of one who has to hurry
 /// does; where nearly all is wanted of the `lowest` acceleration, at once.
