@@ -74,7 +74,9 @@ struct Shot {
     inspector.inspect(world, mix.dt, result.findings);
     for (auto i = before; film && i < result.findings.size(); ++i)
       for (auto const id : {result.findings[i].first, result.findings[i].second})
-        film->show_as(id, cb::RecordedAgentKind::collided, to_string(result.findings[i].flaw));
+        film->show_as(  // the replay follows an ego, too
+            id, is_collision(result.findings[i].flaw) ? cb::RecordedAgentKind::collided : cb::RecordedAgentKind::ego,
+            to_string(result.findings[i].flaw));
     inspector.remove_collided(world);
     for (auto const& left : inflow.leave(world)) {
       bool const arrives = left.status == cb::AgentStatus::arrived || left.status == cb::AgentStatus::left_map;

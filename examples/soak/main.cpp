@@ -106,11 +106,12 @@ struct Row {
     return count(Flaw::rear_end) + count(Flaw::side) + count(Flaw::crossing) + count(Flaw::head_on) +
            count(Flaw::pedestrian);
   }
-  [[nodiscard]] std::uint64_t others() const {
+  [[nodiscard]] std::uint64_t all() const {
     std::uint64_t sum = 0;
     for (auto const flaw : flaws) sum += flaw;
-    return sum - collisions() - count(Flaw::stand);
+    return sum;
   }
+  [[nodiscard]] std::uint64_t others() const { return all() - collisions() - count(Flaw::stand); }
 };
 
 /// Throughput is that of the saturated runs; where the map has lights, of those with lights.
@@ -244,6 +245,7 @@ void replay(Settings const& settings) {
   std::cout << "  " << text << "\n  " << (folder / "replay.html").string() << "  plays it in a browser\n";
 }
 
+/// Returns the exit status.
 int run(Settings& settings) {
   if (take_parameters(settings.parameters)) return 0;
   if (settings.replay) return replay(settings), 0;
@@ -272,7 +274,7 @@ int run(Settings& settings) {
     json->append(json_of(settings, rows, results).dump(1) + "\n");
     json->finish();
   }
-  return 0;
+  return std::any_of(rows.begin(), rows.end(), [](Row const& row) { return row.all() > 0; }) ? 1 : 0;
 }
 
 }  // namespace
@@ -281,7 +283,10 @@ int run(Settings& settings) {
 int main(int argc, char** argv) {
   using namespace examples;
   soak::Settings settings;
-  CLI::App program("Lets mixed traffic flow into every map without end, and counts what must not happen.", "soak");
+  CLI::App program(
+      "Lets mixed traffic flow into every map without end, and counts what must not happen. Exit status 1: some of it "
+      "did.",
+      "soak");
   program.add_option("--hours", settings.hours, "simulated time of traffic on each map; instead of --minutes")
       ->type_name("H")
       ->check(number(0.001, 10'000.0));
@@ -298,10 +303,9 @@ int main(int argc, char** argv) {
       ->check(whole_number(1, 1024))
       ->capture_default_str();
   program
-      .add_option(
-          "--map", settings.map_file,
-          "a map (.xodr, .osm, .xml); default: all own ones, and nine of the corpus in the folder CAMBIUM_CORPUS, or in "
-          "../shared")
+      .add_option("--map", settings.map_file,
+                  "a map (.xodr, .osm, .xml); default: all own ones, and nine of the corpus in the folder "
+                  "CAMBIUM_CORPUS, or in ../shared")
       ->type_name("FILE")
       ->check(not_empty());
   program.add_option("--json", settings.json_file, "file for the table and all findings")

@@ -2,10 +2,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
+
+#include "cambium/core/write_file.hpp"
 
 #include "../support/scale.hpp"
 #include "program.hpp"
@@ -56,6 +59,25 @@ TEST_CASE("the long test repeats one run up to a step, and writes its replay") {
   auto const page = content_of(folder.file("out/replay.html"));
   CHECK(has(page, "</html>"));
   CHECK(has(page, "run 2"));
+}
+
+TEST_CASE("the long test fails where it finds a collision, and its command repeats that") {
+  Program const program("soak");
+  browser::TemporaryFolder const folder;
+  std::string const map = CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr", drivers = folder.file("drivers.json");
+  cambium::write_file(drivers, R"({"urban_driver": {"law": {"lowest_acceleration": -1, "time_headway": 0.1}}})");
+  auto const run = program.run({"--map", map, "--minutes", "2", "--seed", "3", "--parameters", drivers});
+  CHECK(run.code == 1);
+  std::string const name = "examples/run soak ";
+  REQUIRE(has(run.out, name));
+  auto const begin = run.out.find(name) + name.size();
+  std::istringstream command(run.out.substr(begin, run.out.find('\n', begin) - begin));
+  std::vector<std::string> words{"--out", folder.file("out")};
+  for (std::string word; command >> word;) words.push_back(word);
+  auto const again = program.run(words);
+  CHECK(again.code == 0);
+  CHECK(has(again.out, "collision"));
+  CHECK(has(content_of(folder.file("out/replay.html")), "collision"));
 }
 
 TEST_CASE("the long test names what is wrong with its options") {
