@@ -91,4 +91,7 @@ struct Extent {
 /// "Pedestrian planning and design", 0.61 m x 0.46 m), because a pedestrian may turn on the spot.
 [[nodiscard]] constexpr Shape pedestrian() { return {0.3, 0.3, 0.3, 0.3}; }
 
+/// Road users up to this length are on foot [m]. Own choice.
+inline constexpr double longest_on_foot = 1.0;
+
 }  // namespace cambium::geometry

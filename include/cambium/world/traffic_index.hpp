@@ -12,6 +12,7 @@
 
 #include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/world/detail/traffic_walk.hpp"
 #include "cambium/world/traffic_query.hpp"
@@ -368,8 +369,7 @@ class TrafficIndex {
 
   /// Whether somebody crosses the lane that it is in, and does not merge. O(log n).
   [[nodiscard]] bool is_on_foot(TrafficEntry const& entry) const {
-    constexpr double small = 1.0;  // [m]
-    return entry.front + entry.rear < small &&
+    return entry.front + entry.rear <= geometry::longest_on_foot &&
            std::binary_search(reaching_.off_lanes.begin(), reaching_.off_lanes.end(), entry.slot);
   }
 

@@ -8,6 +8,7 @@
 #include "cambium/behavior/law/gap_before_merge.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/geometry/shape.hpp"
 
 namespace cambium {
 
@@ -21,11 +22,10 @@ struct Constraint {
 
 namespace detail {
 
-/// Whether a road user as small as a pedestrian is beside the vehicle, wholly behind its front end. The vehicle
-/// need not wait for it; both would wait for good where the vehicle stands in the pedestrian's way.
+/// Whether a road user on foot is beside the vehicle, wholly behind its front end. The vehicle need not wait for it;
+/// both would wait for good where the vehicle stands in the pedestrian's way.
 [[nodiscard]] inline bool is_passed(RoadUser const& user) {
-  constexpr double small = 1.0;  // [m]
-  return user.gap < -user.length() && user.length() < small;
+  return user.gap < -user.length() && user.length() <= geometry::longest_on_foot;
 }
 
 /// The next road user ahead of `passed`, which `is_passed`, and of others like that. O(those, log n).

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/shape.hpp"
 #include "cambium/scenario/dataset/recorded_traffic.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -14,7 +15,7 @@ namespace cambium {
 
 /// The type of a body by its size, because a world does not say it.
 [[nodiscard]] constexpr TrackType type_of_body(double length, double width) {
-  if (length <= 1.0) return TrackType::pedestrian;
+  if (length <= geometry::longest_on_foot) return TrackType::pedestrian;
   if (width <= 0.7 && length <= 2.2) return TrackType::bicycle;
   if (width <= 1.0 && length <= 3.0) return TrackType::motorcycle;
   return length <= 6.5 ? TrackType::car : TrackType::truck;
