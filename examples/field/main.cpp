@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
-#include "cambium/core/write_file.hpp"
-
 #include "../common/command_line.hpp"
 #include "../common/on_threads.hpp"
+#include "../common/part_file.hpp"
 #include "row.hpp"
 
 namespace field {
@@ -84,9 +84,14 @@ std::vector<Row> measure(Settings const& settings) {
 
 /// Returns the exit status.
 int run(Settings const& settings) {
+  std::optional<examples::PartFile> json;
+  if (!settings.json_file.empty()) json.emplace(settings.json_file);
   auto const rows = measure(settings);
   print(rows);
-  if (!settings.json_file.empty()) cb::write_file(settings.json_file, json_of(settings, rows).dump(1) + "\n");
+  if (json) {
+    json->append(json_of(settings, rows).dump(1) + "\n");
+    json->finish();
+  }
   auto const is_outside = [](Row const& row) { return !row.is_within() && !row.is_only_reported; };
   return std::any_of(rows.begin(), rows.end(), is_outside) ? 1 : 0;
 }

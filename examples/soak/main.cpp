@@ -287,13 +287,14 @@ int main(int argc, char** argv) {
       "Lets mixed traffic flow into every map without end, and counts what must not happen. Exit status 1: some of it "
       "did.",
       "soak");
-  program.add_option("--hours", settings.hours, "simulated time of traffic on each map; instead of --minutes")
-      ->type_name("H")
-      ->check(number(0.001, 10'000.0));
+  auto* const hours =
+      program.add_option("--hours", settings.hours, "simulated time of traffic on each map; instead of --minutes");
+  hours->type_name("H")->check(number(0.001, 10'000.0));
   program.add_option("--minutes", settings.minutes, "simulated time of traffic on each map, in runs of 10 minutes")
       ->type_name("M")
       ->check(number(0.1, 600'000.0))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->excludes(hours);
   program.add_option("--seed", settings.seed, "seed of all random numbers")
       ->type_name("N")
       ->check(whole_number(0, ~std::uint64_t{0}))
@@ -308,15 +309,15 @@ int main(int argc, char** argv) {
                   "CAMBIUM_CORPUS, or in ../shared")
       ->type_name("FILE")
       ->check(not_empty());
-  program.add_option("--json", settings.json_file, "file for the table and all findings")
-      ->type_name("FILE")
-      ->check(not_empty());
-  program.add_option("--replay", settings.replay, "repeat this run instead, on --map, and write its replay")
-      ->type_name("RUN")
-      ->check(whole_number(0, 9'999'999));
+  auto* const json = program.add_option("--json", settings.json_file, "file for the table and all findings");
+  json->type_name("FILE")->check(not_empty());
+  auto* const replay =
+      program.add_option("--replay", settings.replay, "repeat this run instead, on --map, and write its replay");
+  replay->type_name("RUN")->check(whole_number(0, 9'999'999))->excludes(json);
   program.add_option("--step", settings.step, "the step that the replay leads to; default: 100")
       ->type_name("N")
-      ->check(whole_number(1, 100'000'000));
+      ->check(whole_number(1, 100'000'000))
+      ->needs(replay);
   program.add_option("--out", settings.out, "folder for replay.html")
       ->type_name("DIR")
       ->check(not_empty())

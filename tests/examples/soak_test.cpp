@@ -86,6 +86,8 @@ TEST_CASE("the long test names what is wrong with its options") {
                             {"--seed", "x"},
                             {"--map", "nowhere.xodr"},
                             {"--replay", "1"},
+                            {"--step", "5"},
+                            {"--minutes", "1", "--hours", "1"},
                             {"--minute", "1"}})
     program.refuses(words, words[0] == "--map" ? words[1] : words[0]);
 }
