@@ -72,11 +72,12 @@ struct Shot {
     if (film) film->record(world);
     auto const before = result.findings.size();
     inspector.inspect(world, mix.dt, result.findings);
-    for (auto i = before; film && i < result.findings.size(); ++i)
-      for (auto const id : {result.findings[i].first, result.findings[i].second})
-        film->show_as(  // the replay follows an ego, too
-            id, is_collision(result.findings[i].flaw) ? cb::RecordedAgentKind::collided : cb::RecordedAgentKind::ego,
-            to_string(result.findings[i].flaw));
+    for (auto i = before; film && i < result.findings.size(); ++i) {
+      auto const& finding = result.findings[i];
+      using Kind = cb::RecordedAgentKind;
+      auto const kind = is_collision(finding.flaw) ? Kind::collided : Kind::ego;  // the replay follows both
+      for (auto const id : {finding.first, finding.second}) film->show_as(id, kind, to_string(finding.flaw));
+    }
     inspector.remove_collided(world);
     for (auto const& left : inflow.leave(world)) {
       bool const arrives = left.status == cb::AgentStatus::arrived || left.status == cb::AgentStatus::left_map;

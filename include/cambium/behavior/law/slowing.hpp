@@ -54,8 +54,8 @@ struct SlowingDistance {
   return {distance, time + slower / hardest, by_acceleration};
 }
 
-/// The distance in which a vehicle of `speed` [m/s] stops that brakes with sqrt(2 `jerk` speed) and takes the brake
-/// back by `jerk` [m/s^3], to 0 where it stands.
+/// The distance [m] in which a vehicle of `speed` [m/s] stops softly that brakes with sqrt(2 `jerk` speed): the end of
+/// every `slowing_distance` to a standstill, where the braking falls by `jerk` [m/s^3].
 [[nodiscard]] inline double soft_stop(double speed, double jerk) { return speed * std::sqrt(2.0 * speed / jerk) / 3.0; }
 
 /// The acceleration closest to `wanted` [m/s^2] that the jerk permits in a step of `dt` [s] at `speed` [m/s]. Where
