@@ -222,6 +222,16 @@ nlohmann::ordered_json json_of(Settings const& settings, std::vector<Row> const&
   return json;
 }
 
+/// Drops the frames in which no agent of a finding is there yet. Without findings it keeps all.
+void skip_to_findings(cb::Recording& recording) {
+  auto const begin = std::ranges::find_if(recording.frames, [&](cb::RecordedFrame const& frame) {
+    for (std::size_t i = 0; i < frame.poses.size(); ++i)
+      if (frame.poses[i].present && recording.agents[i].kind != cb::RecordedAgentKind::other) return true;
+    return false;
+  });
+  if (begin != recording.frames.end()) recording.frames.erase(recording.frames.begin(), begin);
+}
+
 /// Repeats a run up to a step, and writes the replay of what led there.
 void replay(Settings const& settings) {
   if (settings.map_file.empty())
@@ -232,6 +242,11 @@ void replay(Settings const& settings) {
   Shot shot{.step = settings.step.value_or(100)};
   auto const run = static_cast<std::uint32_t>(*settings.replay);
   auto const result = drive(site, settings.seed, run, run_length, settings.parameters, &shot);
+  if (shot.step > result.steps)
+    throw cb::Error("--step " + std::to_string(shot.step),
+                    "run " + std::to_string(run) + " has " + std::to_string(result.steps) + " steps of " +
+                        std::to_string(result.mix.dt).substr(0, 4) + " s",
+                    "give one of these, as the finding's command does");
   shot.recording.title = "Soak on " + fs::path(site.file).filename().string() + ", run " + std::to_string(run);
   std::string text = result.mix.name + ", dt " + std::to_string(result.mix.dt).substr(0, 4) + " s, seed " +
                      std::to_string(settings.seed) + ", step " + std::to_string(shot.step);
@@ -241,6 +256,7 @@ void replay(Settings const& settings) {
       shot.recording.notes.push_back(std::string(to_string(finding.flaw)) + ": " + finding.who);
       text += "\n  " + shot.recording.notes.back();
     }
+  skip_to_findings(shot.recording);
   cb::write_html_replay(folder / "replay.html", shot.recording);
   std::cout << "  " << text << "\n  " << (folder / "replay.html").string() << "  plays it in a browser\n";
 }

@@ -59,6 +59,11 @@ TEST_CASE("the long test repeats one run up to a step, and writes its replay") {
   auto const page = content_of(folder.file("out/replay.html"));
   CHECK(has(page, "</html>"));
   CHECK(has(page, "run 2"));
+  auto const beyond =
+      program.run({"--map", map, "--seed", "3", "--replay", "2", "--step", "1000000", "--out", folder.file("out")});
+  CHECK(beyond.code == 2);
+  CHECK(has(beyond.err, "--step 1000000: run 2 has "));
+  CHECK(content_of(folder.file("out/replay.html")) == page);
 }
 
 TEST_CASE("the long test fails where it finds a collision, and its command repeats that") {
