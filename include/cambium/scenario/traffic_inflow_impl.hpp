@@ -72,26 +72,31 @@ CAMBIUM_COLD map::Route random_route(Map const& map, LaneId from, RandomStream& 
   if (index_of(from) >= map.lanes().size())
     throw WorldError("random_route", "the map has no such lane", "take one of find_sources, or of Map::lanes");
   auto const is_drivable = [&](LaneId lane) { return map.lane(lane).drivable(); };
-  cambium::map::Route route{{from}, map.lane(from).length()};
-  while (route.length < longest || map.in_junction(route.lanes.back())) {
-    std::vector<LaneId> next;
-    for (auto const lane : map.lane(route.lanes.back()).successors)
-      if (map.lane(lane).drivable() && std::find(route.lanes.begin(), route.lanes.end(), lane) == route.lanes.end())
-        next.push_back(lane);
-    if (next.empty()) {
-      // Where it would come round, it ends before lanes that others cross or merge into.
-      auto const goes_on = [&](map::Lane const& last) {
-        return std::ranges::any_of(last.successors, is_drivable) &&
-               (map.in_junction(last.id) || !last.overlaps.empty());
-      };
-      while (route.lanes.size() > 1 && goes_on(map.lane(route.lanes.back()))) {
-        route.length -= map.lane(route.lanes.back()).length();
-        route.lanes.pop_back();
-      }
-      break;
+  cambium::map::Route route;
+  // Goes on at random; returns whether it would come round.
+  auto const comes_round = [&] {
+    route = {{from}, map.lane(from).length()};
+    while (route.length < longest || map.in_junction(route.lanes.back())) {
+      std::vector<LaneId> next;
+      auto const& successors = map.lane(route.lanes.back()).successors;
+      for (auto const lane : successors)
+        if (is_drivable(lane) && std::find(route.lanes.begin(), route.lanes.end(), lane) == route.lanes.end())
+          next.push_back(lane);
+      if (next.empty()) return std::ranges::any_of(successors, is_drivable);
+      route.lanes.push_back(next[uniform_index(random, static_cast<std::uint32_t>(next.size()))]);
+      route.length += map.lane(route.lanes.back()).length();
     }
-    route.lanes.push_back(next[uniform_index(random, static_cast<std::uint32_t>(next.size()))]);
-    route.length += map.lane(route.lanes.back()).length();
+    return false;
+  };
+  for (int draw = 0; draw < 20; ++draw)
+    if (!comes_round()) return route;
+  // It ends before lanes that others cross or merge into.
+  auto const goes_on = [&](map::Lane const& last) {
+    return std::ranges::any_of(last.successors, is_drivable) && (map.in_junction(last.id) || !last.overlaps.empty());
+  };
+  while (route.lanes.size() > 1 && goes_on(map.lane(route.lanes.back()))) {
+    route.length -= map.lane(route.lanes.back()).length();
+    route.lanes.pop_back();
   }
   return route;
 }
