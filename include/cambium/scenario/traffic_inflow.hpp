@@ -43,9 +43,9 @@ struct TrafficSource {
 /// are at least 2.5 m wide at their begin, and lead on for 30 m. Empty on a closed map. O(lanes).
 [[nodiscard]] std::vector<TrafficSource> find_sources(Map const& map);
 
-/// A random route that begins in lane `from`. It ends where the map ends, after `longest` [m] outside of junctions, or
-/// before it comes round, where nobody crosses or merges. Throws `WorldError` if the map has no such lane. O(lanes of
-/// the route).
+/// A random route that begins in lane `from`. It ends where the map ends or after `longest` [m] outside of junctions;
+/// if 20 draws came round, before it does, where nobody crosses or merges. Throws `WorldError` if the map has no such
+/// lane. O(lanes of the routes).
 [[nodiscard]] map::Route random_route(Map const& map, LaneId from, RandomStream& random, double longest = 400.0);
 
 /// Whether a vehicle of `shape` on the route stays out of the lanes beside it, outside of junctions. Traffic in those
@@ -268,7 +268,7 @@ class TrafficInflow {
       auto const& agent = world.frame().agents[slot];
       double const aside = y * along.cos - x * along.sin;
       if (std::abs(aside) < lane_width && portable::cos(agent.state.heading - pose.heading) > 0.0 &&
-          agent.lane.heading_error * aside < -0.02 * std::abs(aside))
+          agent.lane.heading_error * aside < -0.005 * std::abs(aside))
         return true;
     }
     return false;
