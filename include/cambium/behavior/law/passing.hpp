@@ -39,7 +39,7 @@ template <class View>
   auto const& at = view.place();
   if (std::abs(at.heading_error) > most_aslant) return next;
   auto const& corridor = view.corridor();
-  double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
+  double const stretch = stretch_beside(corridor, at, motion.distance);
   auto const [sin, cos] = portable::sin_cos(at.heading_error);
   double const along = motion.distance * cos / stretch;
   auto const course = approach(LateralCourse<double>{at.lateral - offset, stretch * (sin / cos), 0.0},
