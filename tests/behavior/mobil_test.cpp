@@ -268,6 +268,62 @@ TEST_CASE("who gives up a change at a standstill swings into nobody beside it, a
     }
 }
 
+TEST_CASE("a cyclist who gives up a change at a standstill turns back within its lane") {
+  auto const truck = cb::geometry::truck();
+  for (double const side : {1.0, -1.0})
+    for (double const end : {104.0, 106.0, 108.0}) {  // front end of the truck beside [m]
+      CAPTURE(side);
+      CAPTURE(end);
+      Sim world(support::straight_road(2, 500.0));
+      auto const cyclist = world.add({.position = {100.0, -3.5 - 0.85 * side},
+                                      .heading = 0.36 * side,
+                                      .speed = 0.0,
+                                      .shape = cb::geometry::bicycle(),
+                                      .behavior = mobil(6.0)});
+      world.add({.position = {end - truck.front, -3.5 + 1.75 * side},
+                 .speed = 0.0,
+                 .shape = truck,
+                 .behavior = cb::ConstantAcceleration{}});
+      cb::Mobil::Memory memory;
+      memory.lateral.change = {.target = side > 0.0 ? cb::CorridorId{0} : cb::CorridorId{1},
+                               .left = 9.5f,
+                               .bend = static_cast<float>(0.06 * side)};
+      for (int k = 0; k < 100 && world.state(cyclist).x < 130.0; ++k) {
+        auto const plan = mobil(6.0).plan(world.observe(cyclist), memory, 0.2);
+        REQUIRE(plan.status == cb::PlanStatus::valid);
+        world.set_state(cyclist, plan.trajectory.back());
+        REQUIRE(collisions(world) == 0);
+      }
+      CHECK(world.state(cyclist).x > 130.0);
+    }
+}
+
+TEST_CASE("a vehicle that changes lanes drives evenly past a kink of the road") {
+  for (double const turn : {0.1, -0.1})
+    for (double const begin : {50.0, 60.0, 70.0, 80.0})
+      for (auto const target : {cb::CorridorId{0}, cb::CorridorId{1}}) {
+        CAPTURE(turn);
+        CAPTURE(begin);
+        double const sharp = std::copysign(1.0 / 7.0, turn);  // [1/m]
+        Sim world(support::map_of({.id = "1",
+                                   .line = cb::map::lay_from({}, {{100.0}, {turn / sharp, sharp, sharp}, {200.0}}),
+                                   .sections = {{.right = cb::map::equal_lanes(2)}}}));
+        auto const driver = add(world, target == cb::CorridorId{0} ? 2 : 1, begin, 15.0, mobil(15.0));
+        cb::Mobil::Memory memory;
+        memory.lateral.change = mobil(15.0).lateral.course.begin(target, cb::geometry::car(), 15.0);
+        for (int k = 0; k < 60; ++k) {
+          auto const before = world.state(driver);
+          auto const plan = mobil(15.0).plan(world.observe(driver), memory, 0.1);
+          REQUIRE(plan.status == cb::PlanStatus::valid);
+          auto const& after = plan.trajectory.back();
+          double const way = std::hypot(after.x - before.x, after.y - before.y);
+          CHECK(way == doctest::Approx(0.05 * (before.speed + after.speed)).epsilon(0.1));
+          world.set_state(driver, after);
+        }
+        CHECK_FALSE(memory.lateral.change.active());
+      }
+}
+
 TEST_CASE("a vehicle that leaves its lane hides its leader from its follower, but not long enough for a collision") {
   int hidden = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {

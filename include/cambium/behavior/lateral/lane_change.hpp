@@ -177,7 +177,8 @@ struct LaneChangeCourse {
   /// present course at the vehicle.
   [[nodiscard]] LaneChange back(CorridorId home, geometry::Shape const& shape, double speed, double lateral,
                                 float bend) const {
-    double const least = detail::least_course_length(minimum_length, shape, detail::longer_by_front_back(lateral));
+    double const of_car = std::clamp(shape.front / geometry::car().front, 0.6, 1.0) * minimum_length;  // or bicycle
+    double const least = detail::least_course_length(of_car, shape, detail::longer_by_front_back(lateral));
     return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
   }
 
@@ -192,7 +193,7 @@ template <class View>
 [[nodiscard]] Plan<View> plan_course(View const& view, map::LaneCorridor const& corridor, map::LanePlace const& at,
                                      LaneChange& change, LongitudinalMotion<double> const& motion, double dt,
                                      double offset = 0.0) {
-  double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
+  double const stretch = stretch_beside(corridor, at, motion.distance);
   auto const [sin, cos] = portable::sin_cos(at.heading_error);
   LateralCourse<double> const start{at.lateral - offset, stretch * (sin / cos), change.bend};
   double const along = motion.distance * cos / stretch;
