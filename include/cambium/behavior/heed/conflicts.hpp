@@ -226,8 +226,7 @@ struct Conflicts {
       if (zone.empty() || own.section == map::ConflictSection::none || own.has_entered || own.stops_at <= own.place)
         continue;
       if (!end_of_road) end_of_road = front_in_queue(view, own, limits.constraint());
-      if (is_full_behind(view, zone, own, *end_of_road))
-        obey(Claim::yield, *at, own.may_meet_large, own, view, dt);
+      if (is_full_behind(view, zone, own, *end_of_road)) obey(Claim::yield, *at, own.may_meet_large, own, view, dt);
     }
   }
 
@@ -407,8 +406,9 @@ struct Conflicts {
     bool const is_first = comes_first(view, user, key, has_entered, is_next, own);
     if (own.is_settled) return Claim::free;
     if (own.has_entered) {
-      // Those who come later wait; whoever does not is let through.
-      double const until = way + detail::over_line;
+      // Those who come later wait; whoever does not is let through. One at its place is not in the zone: the two sides
+      // may round that differently.
+      double const until = std::max(way, place - reach.front - at) + detail::over_line;
       bool const intrudes = until < 0.0 || !cambium::can_stop(user.speed, until, 1.5 * detail::judged_deceleration);
       if (!is_first && !intrudes) return Claim::free;
       bool const stands = user.speed < standing_speed && !is_in;
