@@ -186,7 +186,7 @@ struct LaneletCenter {
 /// The middle between facing points goes forwards wherever the directions of the bounds there are less than half a turn
 /// apart. Precondition: `fault_of_bounds` finds none.
 [[nodiscard]] inline LaneletCenter center_of(Lanelet const& lanelet) {
-  constexpr double shortest = 0.25;  // [m] of a straight piece
+  constexpr double shortest = 1.0;  // [m] of a straight piece: shorter ones are jogs of the survey
   FacingBounds const bounds(lanelet);
   Rail const left_rail(lanelet.left), right_rail(lanelet.right);
   std::vector<double> corners;
