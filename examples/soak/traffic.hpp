@@ -76,6 +76,8 @@ struct Site {
   for (auto const& lane : map.lanes()) {
     if (!is_sidewalk(lane) || lane.length() < 15.0) continue;
     auto const walk = [&](std::vector<cb::geometry::Point> const& points) {
+      auto const on_road = [&](cb::geometry::Point const& p) { return map.on_drivable_lane(p); };
+      if (points.size() > 2 && std::any_of(points.begin(), points.end(), on_road)) return;  // roads overlap there
       paths.push_back({.way = cb::map::build_free_corridor(map, points, {.width = 1.0}), .per_hour = 60.0});
     };
     std::vector<cb::geometry::Point> along;
@@ -130,28 +132,25 @@ struct Mix {
   return mix;
 }
 
-/// A driver's car following: a little different from the others.
-[[nodiscard]] inline cb::Idm draw_idm(double limit, bool is_heavy, cb::RandomStream& random) {
-  auto const between = [&](double low, double high) { return cb::Uniform{low, high}(random); };
-  double const free = (std::isfinite(limit) ? limit : 50.0 / 3.6) * between(0.85, 1.1);
-  return {.desired_speed = is_heavy ? std::min(free, between(22.0, 25.0)) : free,
-          .time_headway = between(1.0, 1.8),
-          .minimum_gap = between(1.5, 2.5),
-          .maximum_acceleration = is_heavy ? 0.8 : between(1.2, 2.0)};
+/// A person who drives where the limit is `limit` [m/s]. On motorways half of them keep to the outer lanes, and all
+/// know of exits early.
+[[nodiscard]] inline Driver draw_driver(double limit, bool is_heavy, bool is_motorway, cb::RandomStream& random) {
+  auto const people = is_motorway ? (is_heavy ? cb::presets::motorway_trucks() : cb::presets::motorway_cars())
+                                  : (is_heavy ? cb::presets::town_trucks() : cb::presets::town_cars());
+  auto one = people.draw(random);
+  if (!is_motorway && !std::isfinite(limit)) one.idm.desired_speed = 50.0 / 3.6 * one.speed_factor;
+  auto driver = one.of(Driver{});
+  if (!is_motorway) return driver;
+  driver.lateral.rule.keep_right = cb::uniform01(random) < 0.5;
+  driver.lateral.rule.route_horizon = 800.0;
+  driver.lateral.rule.route_bias = 4.0;
+  return driver;
 }
 
-/// A driver with this car following. On motorways it keeps to the outer lanes.
-[[nodiscard]] inline Driver make_driver(cb::Idm const& idm, bool is_heavy, bool is_motorway, cb::RandomStream& random) {
+/// One who rides a bicycle.
+[[nodiscard]] inline Driver draw_cyclist() {
   Driver driver;
-  cb::presets::follow_as(idm, driver.law);
-  driver.lateral.others = cb::presets::kesting_2010_car();
-  driver.lateral.trucks = cb::presets::kesting_2010_truck();
-  if (!is_motorway) return driver;
-  auto& rule = driver.lateral.rule;
-  rule.keep_right = cb::uniform01(random) < 0.5;
-  rule.bias = is_heavy ? 0.6 : 0.3;
-  rule.route_horizon = 800.0;  // exits are announced early
-  rule.route_bias = 4.0;
+  cb::presets::follow_as(cb::presets::cyclist(), driver.law);
   return driver;
 }
 
@@ -181,10 +180,10 @@ struct Mix {
   if (!has_room && shape != bicycle()) shape = car();
   bool const is_heavy = shape == truck() || shape == bus(), cycles = shape == bicycle();
   double const limit = site.map->lane(source.lane).speed_limit_at(0.0);
-  auto const idm = cycles ? cb::presets::cyclist() : draw_idm(limit, is_heavy, random);
-  return {.speed = idm.desired_speed,
+  auto const driver = cycles ? draw_cyclist() : draw_driver(limit, is_heavy, !site.has_conflicts, random);
+  return {.speed = std::min(driver.law.desired_speed, limit),
           .shape = shape,
-          .behavior = make_driver(idm, is_heavy, !site.has_conflicts, random),
+          .behavior = driver,
           .route = route,
           .dynamics = cycles ? cb::presets::bicycle_dynamics() : cb::SingleTrack{}};
 }
@@ -199,7 +198,8 @@ inline void set_parameters(Sim::AgentSpec& spec, examples::ParameterFile const& 
   cb::RandomStream random(1, 0, 0);
   for (int draw = 0; draw < 50; ++draw) {
     bool const is_heavy = draw % 2 == 0, is_motorway = draw % 3 != 0;
-    auto driver = make_driver(draw_idm(is_motorway ? 30.0 : 14.0, is_heavy, random), is_heavy, is_motorway, random);
+    auto driver =
+        draw % 5 == 0 ? draw_cyclist() : draw_driver(is_motorway ? 30.0 : 14.0, is_heavy, is_motorway, random);
     auto walker = draw_walker(random);
     file.take(driver);
     file.take(walker);
