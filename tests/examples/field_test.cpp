@@ -62,7 +62,6 @@ TEST_CASE("traffic stays in people's bands, but for the rows named here") {
       {"follow-up headway, left from major", 1.9, 2.9},
       {"follow-up headway, right from minor", 3.0, 4.0},
       {"follow-up headway, through from minor", 3.6, 4.3},
-      {"critical gap, right from minor", 5.7, 6.9},
       {"critical gap, left from minor", 6.1, 7.6},
       {"roundabout entry, 1000 cars an hour in the ring", 270, 557},
       {"all-way stop, headway with a queue opposite", 3.6, 5.2},

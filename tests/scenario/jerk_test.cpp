@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -187,6 +189,27 @@ void turn(Who who, double dt, Jerks& jerks) {
   REQUIRE(driven > 0);
 }
 
+/// `vehicles` come to a junction of equal right at once, each from another side.
+template <class D, std::size_t vehicles>
+void meet(Who who, double dt, Jerks& jerks) {
+  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
+  Sim<D> world(site.map);
+  std::set<RoadId> taken;
+  while (taken.size() < vehicles) {
+    auto const lane = site.entrances[uniform_index(who.random, static_cast<std::uint32_t>(site.entrances.size()))];
+    auto const route = site.random_route(lane, who.random);
+    if (taken.contains(site.map->lane(lane).road) || !fits_route(*site.map, route, who.shape)) continue;
+    taken.insert(site.map->lane(lane).road);
+    auto const pose = site.map->lane(lane).path.pose(10.0 + 10.0 * uniform01(who.random));
+    auto spec = who.at<D>(0.0, 8.0 + 3.0 * uniform01(who.random), 13.0);
+    spec.position = pose.position();
+    spec.heading = pose.heading;
+    spec.route = route;
+    world.add(spec);
+  }
+  drive(world, 25.0, dt, jerks);
+}
+
 struct Situation {
   std::string name;
   void (*drive)(Who who, double dt, Jerks& jerks);
@@ -199,7 +222,8 @@ std::vector<Situation> on_roads() {
 template <class D>
 std::vector<Situation> at_junctions() {
   auto all = on_roads<D>();
-  for (auto const& one : {Situation{"light", light<D>}, {"stop sign", stop_sign<D>}, {"turn", turn<D>}})
+  for (auto const& one :
+       {Situation{"light", light<D>}, {"stop sign", stop_sign<D>}, {"turn", turn<D>}, {"meet", meet<D, 2>}})
     all.push_back(one);
   return all;
 }
@@ -242,6 +266,20 @@ TEST_CASE("so are people in cars and trucks") {
     check_smooth(at_junctions<UrbanDriver>(),
                  {.people = &trucks, .shape = geometry::truck(), .random = RandomStream(seed, 1, 0)});
   }
+}
+
+TEST_CASE("of people who come from all four sides at once, hardly anyone jerks") {
+  auto const cars = presets::town_cars(), trucks = presets::town_trucks();
+  Jerks all;
+  for (std::uint64_t seed = 1; seed <= support::runs(50); ++seed)
+    for (double const dt : {0.05, 0.1, 0.2}) {
+      meet<UrbanDriver, 4>({.people = &cars, .random = RandomStream(seed, 0, 0)}, dt, all);
+      meet<UrbanDriver, 4>({.people = &trucks, .shape = geometry::truck(), .random = RandomStream(seed, 1, 0)}, dt,
+                           all);
+    }
+  INFO("above 3 m/s^3 ", 100.0 * all.share_above(3.0), " %, above 10 ", 100.0 * all.share_above(10.0), " %");
+  CHECK(all.share_above(3.0) < 0.01);
+  CHECK(all.share_above(10.0) < 1e-4);
 }
 
 TEST_CASE("without the bound the same situations are not smooth") {

@@ -33,7 +33,8 @@ namespace cambium {
 ///   in time, and for those who go first (`detail::goes_first`) and would be in the zone less than `time_margin` before
 ///   or after it, on a minor road less than `minor_road_margin` more after it. It enters when it waits for nobody and
 ///   there is room behind the section once all before it have closed up to the end of a queue. Behind a merge at which
-///   it goes first, without lights, it needs none: the others would only stand behind it.
+///   it goes first, without lights, it needs none: the others would only stand behind it. One whom only those
+///   inside keep out, and who can no longer stop softly before its place, enters and waits before the zone.
 /// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
 ///   remembers who these are. It lets those through who will not stop, whoever came first.
 ///
@@ -139,6 +140,7 @@ struct Conflicts {
 
   static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
   static constexpr double air = 0.3;             // [m] distance kept to a conflict
+  static constexpr double rounding = 0.02;       // [m] by which it may stand beyond where it stops
   static constexpr double longest_wait = 80.0;   // [s] beyond its patience: see `claim_in_time`
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -183,6 +185,7 @@ struct Conflicts {
   enum class Claim : std::uint8_t {
     free,
     watch,   ///< goes on such that it can still stop: the zone will be free in time
+    wait,    ///< waits for one inside: at its place or, if it cannot stop there softly, before the zone
     yield,   ///< waits if it can still stop
     blocked  ///< does not enter
   };
@@ -287,14 +290,17 @@ struct Conflicts {
     double const to_conflict = zone.begin - air - own.s;
     if (to_conflict + air < -detail::over_line) return;  // it is inside already
     double to_stop = to_conflict, braking = safe_deceleration;
-    JerkBound jerk_bound;  // to watch is not to expect to brake
     if (claim != Claim::watch) {
       braking = waiting_deceleration(own);
-      jerk_bound = own.jerk_bound;
-      to_stop = own.has_entered ? distance_to_zone(view, own, to_conflict) : distance_to_place(own);
-      if (!own.has_entered) own.stops_at = std::min(own.stops_at, own.place);
+      auto const way = stopping_distance(own.speed, own.jerk_bound.acceleration, safe_deceleration, own.jerk_bound);
+      double const softly = own.speed < standing_speed ? -infinite : way - rounding;
+      double const in_section = distance_to_zone(view, own, to_conflict);
+      bool const stops_softly = softly <= own.place - own.s;
+      bool const goes_in = own.has_entered || (claim == Claim::wait && !stops_softly && softly <= in_section);
+      to_stop = goes_in ? in_section : distance_to_place(own);
+      if (!own.has_entered && stops_softly) own.stops_at = std::min(own.stops_at, own.place);
     }
-    auto const bound = motion_before_stop(own.speed, to_stop, braking, own.hardest, dt, jerk_bound);
+    auto const bound = motion_before_stop(own.speed, to_stop, braking, own.hardest, dt, own.jerk_bound);
     if (bound.distance < own.wait.bound.distance) own.wait.bound = bound;
     own.wait.at_line = own.wait.at_line || to_stop < at_line_within;
   }
@@ -410,7 +416,7 @@ struct Conflicts {
       // may round that differently.
       double const until = std::max(way, place - reach.front - at) + detail::over_line;
       bool const intrudes = until < 0.0 || !cambium::can_stop(user.speed, until, 1.5 * detail::judged_deceleration);
-      if (!is_first && !intrudes) return Claim::free;
+      if (!is_first && (!intrudes || is_out_before(zone, other, way, own))) return Claim::free;
       bool const stands = user.speed < standing_speed && !is_in;
       if (stands && own.waited > (view.id() < user.agent ? 10.0 : 20.0)) return Claim::free;
       return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
@@ -422,6 +428,19 @@ struct Conflicts {
       return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
     if (detail::goes_first(view, conflict, zone, other, key, way, own_way, own)) return Claim::free;
     return claim_in_time(view, conflict, zone, other, way, own_way, own);
+  }
+
+  /// Whether the own vehicle, at its speed, has left the zone when one that arrives there after `way` [m] does.
+  [[nodiscard]] bool is_out_before(map::ConflictZone const& zone, Other const& other, double way,
+                                   Own const& own) const {
+    return zone.end - own.s < soonest(other, way, own) * own.speed;
+  }
+
+  /// Earliest time [s] at which another vehicle arrives after `way` [m].
+  [[nodiscard]] double soonest(Other const& other, double way, Own const& own) const {
+    double const speed = other.user.speed;
+    return std::max(other.earliest,
+                    time_to_cover(way, speed, assumed_acceleration, std::max(speed, own.desired_speed)));
   }
 
   /// Whether another vehicle has entered before the own one. Notes it in `Own::now` if it has, or if it stands where
@@ -455,11 +474,12 @@ struct Conflicts {
     double end = zone.other_end + other.reach.rear;  // where it leaves room for the own vehicle
     if (conflict.kind == map::OverlapKind::merge)
       end = std::min(end, zone.begin + view.shape().front + own.minimum_gap + user.rear - conflict.shift);
-    if (!has_entered || user.speed < standing_speed) return Claim::blocked;
+    if (!has_entered) return Claim::blocked;
+    if (user.speed < standing_speed) return Claim::wait;
     double const gap = std::max(0.0, end - other.at), latest = arrival(own, own_way) - 0.5 * time_margin;
     // Cars pull away faster than lorries.
     double const gains = detail::is_large(view, view.shape(user)) ? detail::pull_away : 1.5 * detail::pull_away;
-    if (time_to_cover(gap, user.speed, gains, infinite) >= latest) return Claim::blocked;
+    if (time_to_cover(gap, user.speed, gains, infinite) >= latest) return Claim::wait;
     // It leaves in time even if it brakes.
     double const b = detail::judged_deceleration, end_speed = user.speed * user.speed - 2.0 * b * gap;  // squared
     return end_speed > 0.0 && (user.speed - std::sqrt(end_speed)) / b < latest ? Claim::free : Claim::watch;
@@ -476,11 +496,8 @@ struct Conflicts {
     double const behind = std::max(0.0, time_margin - impatience);
     double const before =
         std::max(0.0, time_margin + (conflict.from_minor_road ? minor_road_margin : 0.0) - impatience);
-    double const soonest =
-        time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.desired_speed));
-    Window const theirs{
-        std::max(earliest, soonest),
-        (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};
+    Window const theirs{soonest(other, way, own), (way + zone.other_end - zone.other_begin + reach.front + reach.rear) /
+                                                      std::max(user.speed, standing_speed)};
     double const leaves =
         conflict.kind == map::OverlapKind::merge ? merged_at(view, conflict, zone, user, own) : zone.end;
     Window const ours{arrival(own, own_way), arrival(own, leaves - own.s) + build_up(own)};
