@@ -324,6 +324,34 @@ TEST_CASE("a vehicle that changes lanes drives evenly past a kink of the road") 
       }
 }
 
+TEST_CASE("a slow change stays on the road where the two lanes become one") {
+  auto const map = support::own_map("lane_drop.xodr");
+  auto const ends = std::ranges::find_if(map->lanes(), [](auto const& lane) { return is_valid(lane.merges_into); });
+  int changes = 0;
+  for (double const speed : {10.0, 20.0})
+    for (double const begin : {0.0, 5.0, 10.0, 15.0, 20.0}) {
+      CAPTURE(speed);
+      CAPTURE(begin);
+      Sim world(map);
+      auto const add = [&](double s, double v, auto const& driver) {
+        auto const pose = ends->path.pose(s);
+        world.add({.position = pose.position(), .heading = pose.heading, .speed = v, .behavior = driver});
+      };
+      auto driver = mobil(1.2 * speed);
+      driver.lateral.course.duration = 10.0;
+      add(begin, speed, driver);
+      add(begin + 40.0, 0.5 * speed, mobil(0.5 * speed));
+      for (int k = 0; k < 80; ++k) {
+        REQUIRE(world.step(0.1));
+        auto const& changer = world.frame().agents[cb::Slot{0}];
+        changes += change_of(world, cb::Slot{0}).active();
+        for (auto const& corner : cb::geometry::box_of(cb::geometry::car(), changer.state).corners())
+          CHECK(map->on_drivable_lane(corner));
+      }
+    }
+  CHECK(changes > 0);
+}
+
 TEST_CASE("a vehicle that leaves its lane hides its leader from its follower, but not long enough for a collision") {
   int hidden = 0;
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {

@@ -377,16 +377,35 @@ struct ChangeLanes {
     return until_end - view.shape().front - changes * course.least_length(view.shape());
   }
 
-  /// Longest permissible length of a change [m]: it must end before the lane does, lead around a standing object, and
-  /// leave room for the next change.
+  /// Longest permissible length of a change [m]: it must end before the lane does, stay on the road, lead around a
+  /// standing object, and leave room for the next change.
   template <class View>
   CAMBIUM_NOINLINE [[nodiscard]] double longest_change(View const& view, std::optional<RoadUser> const& leader,
                                                        CorridorId target) const {
     auto const& at = view.place();
-    double const until_end =
-        std::min(dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, view.place(target)));
+    auto const there = view.place(target);
+    double const until_end = std::min(
+        {dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, there), until_together(view, there)});
     double const beside_object = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
+  }
+
+  /// The longest change to the lane of `there` [m] that does not leave the road where the two lanes become one: twice
+  /// the way to where they are half as far apart as here; infinite if a change is over by then.
+  template <class View>
+  [[nodiscard]] double until_together(View const& view, map::LanePlace const& there) const {
+    constexpr double step = 5.0;  // [m]
+    double const wanted = course.begin(there.corridor, view.shape(), std::max(0.0, view.state().speed)).left;
+    auto const &from = view.corridor().center, &to = view.road().corridors[there.corridor].center;
+    auto hint = view.place().segment, hint_there = there.segment;
+    auto const apart = [&](double way) {
+      auto const here = from.pose(view.place().s + way, hint), beside = to.pose(there.s + way, hint_there);
+      return (here.position() - beside.position()).norm();
+    };
+    double const half = 0.5 * apart(0.0);
+    for (double way = step; 2.0 * way < wanted; way += step)
+      if (apart(way) < half) return 2.0 * way;
+    return infinite;
   }
 
   /// Adds a leader in the lane of `place` that the vehicle stays in; before an object it leaves room to change.
