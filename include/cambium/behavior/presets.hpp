@@ -44,8 +44,17 @@ namespace cambium::presets {
           .lowest_acceleration = -6.0};
 }
 
-/// BARK's defaults: 15 m/s, 1.5 s, 1.7 m/s^2, 1.67 m/s^2, 2 m; those of `Idm`.
-[[nodiscard]] constexpr Idm bark() { return {}; }
+/// BARK's defaults (bark/commons/params, BaseIDM).
+[[nodiscard]] constexpr Idm bark() {
+  return {.desired_speed = 15.0,
+          .time_headway = 1.5,
+          .minimum_gap = 2.0,
+          .maximum_acceleration = 1.7,
+          .comfortable_deceleration = 1.67,
+          .exponent = 4.0,
+          .lowest_acceleration = -5.0,
+          .highest_acceleration = 8.0};
+}
 
 /// A usual driver of a car: about the means of `motorway_cars` and `town_cars`.
 [[nodiscard]] constexpr Idm normal() {

@@ -251,6 +251,7 @@ class TrafficInflow {
   [[nodiscard]] bool is_occupied(WorldType const& world, geometry::Pose const& pose,
                                  geometry::Shape const& shape) const {
     constexpr double near = 10.0, lane_width = 5.0;  // [m]
+    constexpr double least_turn = 0.005;             // [rad] towards this lane: one has begun to change into it
     auto const along = portable::sin_cos(pose.heading);
     double const half = 0.5 * rules_.minimum_gap;
     auto box = geometry::box_of(shape, pose);
@@ -268,7 +269,7 @@ class TrafficInflow {
       auto const& agent = world.frame().agents[slot];
       double const aside = y * along.cos - x * along.sin;
       if (std::abs(aside) < lane_width && portable::cos(agent.state.heading - pose.heading) > 0.0 &&
-          agent.lane.heading_error * aside < -0.005 * std::abs(aside))
+          agent.lane.heading_error * aside < -least_turn * std::abs(aside))
         return true;
     }
     return false;

@@ -67,9 +67,9 @@ inline constexpr DriverText driver_text<Idm, KeepLane, Pedestrians>{
 template <>
 inline constexpr DriverText driver_text<Acc, KeepLane, Pedestrians>{
     "adaptive_cruise_control",
-    "keeps its lane; IDM, but where it brakes harder than the constant-acceleration heuristic c requires: "
-    "(1 - coolness) a_IDM + coolness (c + b tanh((a_IDM - c) / b))",
-    "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6"};
+    "keeps its lane; its base law, but where that brakes harder than the constant-acceleration heuristic c requires: "
+    "(1 - coolness) a_base + coolness (c + b tanh((a_base - c) / b))",
+    "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6; base: Treiber, Kesting 2013"};
 template <>
 inline constexpr DriverText driver_text<Idm, TrackLine, BendsFor<340>, Pedestrians>{
     "idm_lane_tracking",

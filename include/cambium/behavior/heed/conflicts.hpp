@@ -140,7 +140,6 @@ struct Conflicts {
 
   static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
   static constexpr double air = 0.3;             // [m] distance kept to a conflict
-  static constexpr double rounding = 0.02;       // [m] by which it may stand beyond where it stops
   static constexpr double longest_wait = 80.0;   // [s] beyond its patience: see `claim_in_time`
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -292,17 +291,22 @@ struct Conflicts {
     double to_stop = to_conflict, braking = safe_deceleration;
     if (claim != Claim::watch) {
       braking = waiting_deceleration(own);
-      auto const way = stopping_distance(own.speed, own.jerk_bound.acceleration, safe_deceleration, own.jerk_bound);
-      double const softly = own.speed < standing_speed ? -infinite : way - rounding;
-      double const in_section = distance_to_zone(view, own, to_conflict);
-      bool const stops_softly = softly <= own.place - own.s;
-      bool const goes_in = own.has_entered || (claim == Claim::wait && !stops_softly && softly <= in_section);
-      to_stop = goes_in ? in_section : distance_to_place(own);
-      if (!own.has_entered && stops_softly) own.stops_at = std::min(own.stops_at, own.place);
+      auto const to_zone = [&] { return distance_to_zone(view, own, to_conflict); };
+      bool const goes_in = own.has_entered || (claim == Claim::wait && !stops_softly(own, own.place - own.s) &&
+                                               stops_softly(own, to_zone()));
+      to_stop = goes_in ? to_zone() : distance_to_place(own);
+      if (!goes_in) own.stops_at = std::min(own.stops_at, own.place);
     }
     auto const bound = motion_before_stop(own.speed, to_stop, braking, own.hardest, dt, own.jerk_bound);
     if (bound.distance < own.wait.bound.distance) own.wait.bound = bound;
     own.wait.at_line = own.wait.at_line || to_stop < at_line_within;
+  }
+
+  /// Whether the driver can stop within `distance` [m] without braking harder than `jerk_bound` permits.
+  [[nodiscard]] bool stops_softly(Own const& own, double distance) const {
+    constexpr double tolerance = 0.02;  // [m]: of the place where it stands
+    return own.speed < standing_speed || stopping_distance(own.speed, own.jerk_bound.acceleration, safe_deceleration,
+                                                           own.jerk_bound) <= distance + tolerance;
   }
 
   /// Distance to where it stops before a section that it has not entered: before its place if it still can [m].
@@ -416,7 +420,7 @@ struct Conflicts {
       // may round that differently.
       double const until = std::max(way, place - reach.front - at) + detail::over_line;
       bool const intrudes = until < 0.0 || !cambium::can_stop(user.speed, until, 1.5 * detail::judged_deceleration);
-      if (!is_first && (!intrudes || is_out_before(zone, other, way, own))) return Claim::free;
+      if (!is_first && !intrudes) return Claim::free;
       bool const stands = user.speed < standing_speed && !is_in;
       if (stands && own.waited > (view.id() < user.agent ? 10.0 : 20.0)) return Claim::free;
       return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
@@ -428,19 +432,6 @@ struct Conflicts {
       return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
     if (detail::goes_first(view, conflict, zone, other, key, way, own_way, own)) return Claim::free;
     return claim_in_time(view, conflict, zone, other, way, own_way, own);
-  }
-
-  /// Whether the own vehicle, at its speed, has left the zone when one that arrives there after `way` [m] does.
-  [[nodiscard]] bool is_out_before(map::ConflictZone const& zone, Other const& other, double way,
-                                   Own const& own) const {
-    return zone.end - own.s < soonest(other, way, own) * own.speed;
-  }
-
-  /// Earliest time [s] at which another vehicle arrives after `way` [m].
-  [[nodiscard]] double soonest(Other const& other, double way, Own const& own) const {
-    double const speed = other.user.speed;
-    return std::max(other.earliest,
-                    time_to_cover(way, speed, assumed_acceleration, std::max(speed, own.desired_speed)));
   }
 
   /// Whether another vehicle has entered before the own one. Notes it in `Own::now` if it has, or if it stands where
@@ -496,8 +487,11 @@ struct Conflicts {
     double const behind = std::max(0.0, time_margin - impatience);
     double const before =
         std::max(0.0, time_margin + (conflict.from_minor_road ? minor_road_margin : 0.0) - impatience);
-    Window const theirs{soonest(other, way, own), (way + zone.other_end - zone.other_begin + reach.front + reach.rear) /
-                                                      std::max(user.speed, standing_speed)};
+    double const soonest =
+        time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.desired_speed));
+    Window const theirs{
+        std::max(earliest, soonest),
+        (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};
     double const leaves =
         conflict.kind == map::OverlapKind::merge ? merged_at(view, conflict, zone, user, own) : zone.end;
     Window const ours{arrival(own, own_way), arrival(own, leaves - own.s) + build_up(own)};

@@ -177,8 +177,10 @@ struct LaneChangeCourse {
   /// present course at the vehicle.
   [[nodiscard]] LaneChange back(CorridorId home, geometry::Shape const& shape, double speed, double lateral,
                                 float bend) const {
-    double const of_car = std::clamp(shape.front / geometry::car().front, 0.6, 1.0) * minimum_length;  // or bicycle
-    double const least = detail::least_course_length(of_car, shape, detail::longer_by_front_back(lateral));
+    constexpr double least_share = 0.6;  // of a car's course: a bicycle's
+    double const share = std::clamp(shape.front / geometry::car().front, least_share, 1.0);
+    double const least =
+        detail::least_course_length(share * minimum_length, shape, detail::longer_by_front_back(lateral));
     return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
   }
 

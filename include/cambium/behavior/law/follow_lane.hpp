@@ -51,17 +51,17 @@ template <class View>
 
 namespace detail {
 /// How long the way of a vehicle beside the centre line of `corridor` is, over `distance` [m] from `at`, for each metre
-/// along that line [-]: 1 less the curvature times the offset. A kink of a few centimetres counts as no more than it
-/// turns the line in this step.
+/// along that line [-]: 1 less the curvature times the offset. Where a bend ends in this step, or within a metre, the
+/// mean curvature counts.
 [[nodiscard]] inline double stretch_beside(map::LaneCorridor const& corridor, map::LanePlace const& at,
                                            double distance) {
   auto const& segment = corridor.center.segments()[at.segment];
+  double const inside = at.s - segment.s, ahead = std::max(1.0, distance);
   double curvature = segment.curvature;
-  double const inside = at.s - segment.s;
-  if (inside + distance > segment.length && distance > 0.0) {
+  if (inside + ahead > segment.length) {
     auto hint = at.segment;
     double const heading = segment.heading + curvature * std::clamp(inside, 0.0, segment.length);
-    curvature = (corridor.center.pose(at.s + distance, hint).heading - heading) / distance;
+    curvature = (corridor.center.pose(at.s + ahead, hint).heading - heading) / ahead;
   }
   return std::max(0.1, 1.0 - curvature * at.lateral);
 }
