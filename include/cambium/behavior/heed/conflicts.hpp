@@ -317,18 +317,21 @@ struct Conflicts {
     return std::max(0.0, way);
   }
 
-  /// Distance [m] to the first zone ahead before which the vehicle can still stop, at most `to_conflict`; to the
-  /// conflict where that is far, maybe in another junction.
+  /// Distance [m] to the first zone ahead before which the vehicle can still stop, or to where its front end would be
+  /// in a merge, so that others follow it; at most `to_conflict`, and that where it is far, maybe in another junction.
   template <class View>
   [[nodiscard]] double distance_to_zone(View const& view, Own const& own, double to_conflict) const {
     double nearest = to_conflict;
     if (to_conflict > detail::short_way) return nearest;
+    auto const offer = [&](double way) {
+      if (way >= 0.0 && way < nearest && can_stop(own.speed, way)) nearest = way;
+    };
     for (auto const& c : view.corridor().conflicts)
-      for (std::size_t const other : {0u, 1u}) {
-        double const way = c.zones[own.is_large][other].begin - air - own.s;
-        if (c.kind == map::OverlapKind::split || (other == 1 && !own.may_meet_large) || way < 0.0) continue;
-        if (way < nearest && can_stop(own.speed, way)) nearest = way;
-      }
+      for (std::size_t const other : {0u, 1u})
+        if (c.kind != map::OverlapKind::split && (other == 0 || own.may_meet_large))
+          offer(c.zones[own.is_large][other].begin - air - own.s);
+    for (auto const& feeder : view.corridor().feeders)
+      if (feeder.by_rule) offer(feeder.free_until - air - own.front);
     return nearest;
   }
 
