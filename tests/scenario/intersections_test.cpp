@@ -159,6 +159,17 @@ TEST_CASE("no three vehicles block each other for good that leave their places t
   CHECK(tally.stuck == 0);
 }
 
+// The van once stopped with its front end in the merge, where the cyclist followed it.
+TEST_CASE("a van that waits for a cyclist to merge before it does not block it") {
+  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
+  Tally tally;
+  run(site, {.mix = {.truck_share = 0.15, .van_share = 0.15, .bicycle_share = 0.3}, .scattered_ids = true}, 1644, 0.2,
+      tally);
+  CAPTURE(tally.first);
+  CHECK(tally.collisions == 0);
+  CHECK(tally.stuck == 0);
+}
+
 TEST_CASE("who reaches the end of its route sees a vehicle beyond it that still reaches back") {
   auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
   for (LaneId const entrance : site.entrances) {
