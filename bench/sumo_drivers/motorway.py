@@ -74,6 +74,7 @@ def basic_segment(settings, folder):
             speeds.append((every[-1].flow, every[-1].speed))
     most = max(every, key=lambda one: one.flow)
     means = [mean(one.headways) for one in every[1:6]]
+    shares = [one.speed / LIMIT for one in every[0].passages]
     return [
         every[0].speed / KMH,
         most.flow,
@@ -87,7 +88,8 @@ def basic_segment(settings, folder):
         # By default a vehicle jumps to the middle of the other lane within one step.
         0.0,
         0.0,
-        mean([one.speed for one in every[0].passages]) / LIMIT,
+        mean(shares),
+        statistics.pstdev(shares),
     ]
 
 
@@ -202,6 +204,7 @@ EXPERIMENTS = {
             "duration of a lane change, mean",
             "lane changes of 2.5 to 8 s",
             "speed in shares of the limit, mean",
+            "speed in shares of the limit, standard deviation",
         ],
     ),
     "trucks": (with_trucks, ["capacity with 15 % lorries, in shares of the handbook's"]),

@@ -145,3 +145,26 @@ TEST_CASE("an aggressive driver drives faster than the limit, a timid one slower
   CHECK(speed(presets::aggressive<Lawful>()) > 1.01);
   CHECK(speed(presets::normal<Lawful>()) == doctest::Approx(1.0).epsilon(0.01));
 }
+
+TEST_CASE("the same stream gives the same people, and those who are fast are so at any limit") {
+  auto const cars = cb::presets::town_cars();
+  constexpr int count = 4000;
+  cb::RandomStream random(1, 0, 0), again(1, 0, 0), draws(1, 0, 0);
+  int faster = 0, pairs = 0;
+  double headway = 0.0;
+  cb::presets::Temperament last;
+  for (int i = 0; i < count; ++i) {
+    auto const one = cars.draw(random), same = cars.draw(again);
+    CHECK(one.idm.time_headway == same.idm.time_headway);
+    CHECK(one.signal_braking == same.signal_braking);
+    pairs += one.idm.desired_speed > last.idm.desired_speed && one.speed_factor != last.speed_factor;
+    faster += one.idm.desired_speed > last.idm.desired_speed && one.speed_factor > last.speed_factor;
+    headway += one.idm.time_headway / count;
+    last = one;
+  }
+  CHECK(faster >= pairs - 1);  // the first one is compared with nobody
+  CHECK(pairs > count / 3);
+  CHECK(headway == doctest::Approx(1.32).epsilon(0.03));  // 1.3 s, and no less than 0.4 s
+  for (int i = 0; i < 14 * count; ++i) (void)cb::uniform01(draws);
+  CHECK(draws() == random());
+}
