@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
 """Measures SUMO's default drivers as `examples/run field` measures cambium's, and makes the table of both.
 
+    bench/sumo_field.py --json FILE --field --into README   # all of it; or step by step:
+
     examples/run field --json FILE
     bench/sumo_field.py --json FILE                 # fills in what SUMO's drivers do
     bench/sumo_field.py --json FILE --markdown      # prints the table
@@ -12,6 +14,7 @@ import concurrent.futures
 import json
 import os
 import re
+import subprocess
 import sys
 import tempfile
 import time
@@ -24,6 +27,7 @@ from sumo_drivers.simulation import Error  # noqa: E402
 EXPERIMENTS = {**motorway.EXPERIMENTS, **town.EXPERIMENTS}  # name -> what measures, and what it measures
 KEYS = ("quantity", "people", "cambium", "sumo", "unit", "source")
 BEGIN, END = "<!-- field -->", "<!-- /field -->"
+FIELD = [os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "examples", "run"), "field"]
 
 
 def quantity(row):
@@ -86,6 +90,14 @@ def measure(name, settings):
             return f"'{name}' stays null: {nothing}"
     print(f"{name}: {time.time() - begin:.0f} s", file=sys.stderr)
     return values
+
+
+def measure_cambium(path, settings):
+    """Writes the file as `examples/run field` does, whose status is 1 where a row is out of its band."""
+    only = ["--only", settings.only] if settings.only else []
+    words = [*FIELD, "--json", path, "--seed", str(settings.seed), "--threads", str(settings.threads), *only]
+    if subprocess.run(words, stdout=subprocess.DEVNULL).returncode not in (0, 1):
+        raise Error(f"{' '.join(words)}: failed; what it says stands above")
 
 
 def fill(said, path, settings):
@@ -159,23 +171,25 @@ def arguments(words):
         "--step", metavar="SECONDS", type=within(float, 0.01, 1.0), default=0.1, help="SUMO's step; its own default is 1"
     )
     parser.add_argument("--threads", metavar="N", type=within(int, 1, 1024), default=os.cpu_count(), help="runs at a time")
-    parser.add_argument("--markdown", action="store_true", help="measure nothing: print the table of the file")
-    parser.add_argument("--into", metavar="FILE", help="measure nothing: put the table into this Markdown file")
+    parser.add_argument("--field", action="store_true", help="first write the file by examples/run field")
+    parser.add_argument("--markdown", action="store_true", help="print the table of the file; without --field, measure nothing")
+    parser.add_argument("--into", metavar="FILE", help="put it into this Markdown file; without --field, measure nothing")
     return parser.parse_args(words)
 
 
 def main(words):
     settings = arguments(words)
+    if settings.field:
+        measure_cambium(settings.json, settings)
     said = read(settings.json)
+    if settings.field or not (settings.markdown or settings.into):
+        for sentence in fill(said, settings.json, settings):
+            print(sentence, file=sys.stderr)
+        write(settings.json, json.dumps(said, indent=1, ensure_ascii=False) + "\n")
     if settings.markdown:
         print(table(said["rows"]), end="")
     if settings.into:
         put_into(settings.into, table(said["rows"]))
-    if settings.markdown or settings.into:
-        return
-    for sentence in fill(said, settings.json, settings):
-        print(sentence, file=sys.stderr)
-    write(settings.json, json.dumps(said, indent=1, ensure_ascii=False) + "\n")
 
 
 if __name__ == "__main__":

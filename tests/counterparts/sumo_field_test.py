@@ -98,6 +98,23 @@ class Files(WithFolder):
         finally:
             simulation.shutil.which = kept
 
+    def test_one_command_measures_both_and_makes_the_table(self):
+        readme = self.folder / "README.md"
+        readme.write_text("before\n<!-- field -->\nold\n<!-- /field -->\nafter\n")
+        written = json.dumps({"seed": 7, "rows": [row("a")]})
+        field = f"import sys; open(sys.argv[sys.argv.index('--json') + 1], 'w').write({written!r}); sys.exit(1)"
+        kept, sumo_field.FIELD = sumo_field.FIELD, [sys.executable, "-c", field]
+        try:
+            experiments = {"one": (lambda settings, folder: [2.5], ["a"])}
+            self.assertEqual(self.fill([], experiments, "--field", "--into", str(readme))[0], [2.5])
+            before, made, after = re.split("<!-- /?field -->", readme.read_text())
+            self.assertEqual((before, after), ("before\n", "\nafter\n"))
+            self.assertIn("| **2.5** |", made)
+            sumo_field.FIELD = [sys.executable, "-c", "import sys; sys.exit(2)"]
+            self.refuses(["--json", self.file(), "--field"], "failed", "stands above")
+        finally:
+            sumo_field.FIELD = kept
+
     def test_what_field_measures_is_measured_here(self):
         known = {quantity for _, measured in sumo_field.EXPERIMENTS.values() for quantity in measured}
         sources = "".join(path.read_text() for path in sorted((root / "examples" / "field").glob("*.cpp")))
