@@ -58,7 +58,7 @@ def saturation(settings, folder):
 
 
 def red_running(settings, folder):
-    green, cycle, hours = 42.0, 90.0, 8.0
+    green, cycle, hours = 42.0, 90.0, 50.0
     times = approach(settings, folder, green, cycle, 700.0, 3600.0 * hours)
     runners = sum(time % cycle > green + YELLOW for time in times)
     return [runners / hours, runners / (3600.0 * hours / cycle)]

@@ -71,7 +71,7 @@ std::vector<Row> saturation(std::uint64_t seed) {
 }
 
 std::vector<Row> red_running(std::uint64_t seed) {
-  constexpr double green = 42.0, cycle = 90.0, hours = 8.0, demand = 700.0;
+  constexpr double green = 42.0, cycle = 90.0, hours = 50.0, demand = 700.0;
   Approach approach(green, cycle, demand, seed);
   approach.junction.drive(3600.0 * hours);
   auto const& times = approach.junction.at_line(0);
