@@ -266,6 +266,9 @@ int run(Settings& settings) {
   if (take_parameters(settings.parameters)) return 0;
   if (settings.replay) return replay(settings), 0;
   std::optional<examples::PartFile> json;
+  std::error_code none;
+  if (!settings.json_file.empty() && fs::equivalent(settings.json_file, settings.map_file, none))
+    throw cb::Error("--json " + settings.json_file, "is the map", "give the name of another file");
   if (!settings.json_file.empty()) json.emplace(settings.json_file);
   auto const sites = sites_of(settings);
   auto const runs = settings.runs();
@@ -306,11 +309,9 @@ int main(int argc, char** argv) {
   auto* const hours =
       program.add_option("--hours", settings.hours, "simulated time of traffic on each map; instead of --minutes");
   hours->type_name("H")->check(number(0.001, 10'000.0));
-  program.add_option("--minutes", settings.minutes, "simulated time of traffic on each map, in runs of 10 minutes")
-      ->type_name("M")
-      ->check(number(0.1, 600'000.0))
-      ->capture_default_str()
-      ->excludes(hours);
+  auto* const minutes =
+      program.add_option("--minutes", settings.minutes, "simulated time of traffic on each map, in runs of 10 minutes");
+  minutes->type_name("M")->check(number(0.1, 600'000.0))->capture_default_str()->excludes(hours);
   program.add_option("--seed", settings.seed, "seed of all random numbers")
       ->type_name("N")
       ->check(whole_number(0, ~std::uint64_t{0}))
@@ -329,7 +330,7 @@ int main(int argc, char** argv) {
   json->type_name("FILE")->check(not_empty());
   auto* const replay =
       program.add_option("--replay", settings.replay, "repeat this run instead, on --map, and write its replay");
-  replay->type_name("RUN")->check(whole_number(0, 9'999'999))->excludes(json);
+  replay->type_name("RUN")->check(whole_number(0, 9'999'999))->excludes(json)->excludes(hours)->excludes(minutes);
   program.add_option("--step", settings.step, "the step that the replay leads to; default: 100")
       ->type_name("N")
       ->check(whole_number(1, 100'000'000))
@@ -337,7 +338,8 @@ int main(int argc, char** argv) {
   program.add_option("--out", settings.out, "folder for replay.html")
       ->type_name("DIR")
       ->check(not_empty())
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(replay);
   settings.parameters.add_options(program);
   program.footer(
       "What it prints:\n"

@@ -93,6 +93,13 @@ TEST_CASE("the long test names what is wrong with its options") {
                             {"--replay", "1"},
                             {"--step", "5"},
                             {"--minutes", "1", "--hours", "1"},
+                            {"--hours", "1", "--replay", "3", "--map", "nowhere.xodr"},
+                            {"--out", "out"},
                             {"--minute", "1"}})
     program.refuses(words, words[0] == "--map" ? words[1] : words[0]);
+  browser::TemporaryFolder const folder;
+  std::string const map = folder.file("map.xodr"), text = content_of(CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr");
+  cambium::write_file(map, text);
+  program.refuses({"--map", map, "--minutes", "0.1", "--json", map}, "is the map");
+  CHECK(content_of(map) == text);
 }
