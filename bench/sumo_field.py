@@ -180,6 +180,7 @@ def arguments(words):
 def main(words):
     settings = arguments(words)
     if settings.field:
+        simulation.version()  # fails at once where SUMO is not installed, not after minutes
         measure_cambium(settings.json, settings)
     said = read(settings.json)
     if settings.field or not (settings.markdown or settings.into):

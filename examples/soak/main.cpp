@@ -266,9 +266,9 @@ int run(Settings& settings) {
   if (take_parameters(settings.parameters)) return 0;
   if (settings.replay) return replay(settings), 0;
   std::optional<examples::PartFile> json;
-  std::error_code none;
-  if (!settings.json_file.empty() && fs::equivalent(settings.json_file, settings.map_file, none))
-    throw cb::Error("--json " + settings.json_file, "is the map", "give the name of another file");
+  for (auto const& input : {settings.map_file, settings.parameters.path()})
+    if (std::error_code none; fs::equivalent(settings.json_file, input, none))
+      throw cb::Error("--json " + settings.json_file, "is a file that this run reads", "give the name of another file");
   if (!settings.json_file.empty()) json.emplace(settings.json_file);
   auto const sites = sites_of(settings);
   auto const runs = settings.runs();

@@ -95,6 +95,8 @@ class Files(WithFolder):
         kept, simulation.shutil.which = simulation.shutil.which, lambda *words, **more: None
         try:
             self.refuses(["--json", path], "pip install eclipse-sumo")
+            self.refuses(["--json", path, "--field"], "pip install eclipse-sumo")
+            self.assertEqual(len(json.loads(Path(path).read_text())["rows"]), 1)  # it has not measured cambium yet
         finally:
             simulation.shutil.which = kept
 
@@ -111,7 +113,8 @@ class Files(WithFolder):
             self.assertEqual((before, after), ("before\n", "\nafter\n"))
             self.assertIn("| **2.5** |", made)
             sumo_field.FIELD = [sys.executable, "-c", "import sys; sys.exit(2)"]
-            self.refuses(["--json", self.file(), "--field"], "failed", "stands above")
+            with self.assertRaisesRegex(simulation.Error, "failed; what it says stands above"):
+                self.fill([], experiments, "--field")
         finally:
             sumo_field.FIELD = kept
 

@@ -99,7 +99,12 @@ TEST_CASE("the long test names what is wrong with its options") {
     program.refuses(words, words[0] == "--map" ? words[1] : words[0]);
   browser::TemporaryFolder const folder;
   std::string const map = folder.file("map.xodr"), text = content_of(CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr");
+  std::string const drivers = folder.file("drivers.json");
   cambium::write_file(map, text);
-  program.refuses({"--map", map, "--minutes", "0.1", "--json", map}, "is the map");
+  cambium::write_file(drivers, "{}");
+  for (auto const& input : {map, drivers})
+    program.refuses({"--map", map, "--minutes", "0.1", "--parameters", drivers, "--json", input},
+                    "that this run reads");
   CHECK(content_of(map) == text);
+  CHECK(content_of(drivers) == "{}");
 }

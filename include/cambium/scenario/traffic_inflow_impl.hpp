@@ -73,8 +73,8 @@ CAMBIUM_COLD map::Route random_route(Map const& map, LaneId from, RandomStream& 
     throw WorldError("random_route", "the map has no such lane", "take one of find_sources, or of Map::lanes");
   auto const is_drivable = [&](LaneId lane) { return map.lane(lane).drivable(); };
   cambium::map::Route route;
-  // Goes on at random; returns whether it would come round.
-  auto const comes_round = [&] {
+  // Draws the route anew; false where it would come round.
+  auto const draw_route = [&] {
     route = {{from}, map.lane(from).length()};
     while (route.length < longest || map.in_junction(route.lanes.back())) {
       std::vector<LaneId> next;
@@ -82,14 +82,14 @@ CAMBIUM_COLD map::Route random_route(Map const& map, LaneId from, RandomStream& 
       for (auto const lane : successors)
         if (is_drivable(lane) && std::find(route.lanes.begin(), route.lanes.end(), lane) == route.lanes.end())
           next.push_back(lane);
-      if (next.empty()) return std::ranges::any_of(successors, is_drivable);
+      if (next.empty()) return std::ranges::none_of(successors, is_drivable);
       route.lanes.push_back(next[uniform_index(random, static_cast<std::uint32_t>(next.size()))]);
       route.length += map.lane(route.lanes.back()).length();
     }
-    return false;
+    return true;
   };
-  for (int draw = 0; draw < 20; ++draw)
-    if (!comes_round()) return route;
+  for (int draws = 0; draws < 20; ++draws)
+    if (draw_route()) return route;
   // It ends before lanes that others cross or merge into.
   auto const goes_on = [&](map::Lane const& last) {
     return std::ranges::any_of(last.successors, is_drivable) && (map.in_junction(last.id) || !last.overlaps.empty());
