@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "lane_traffic_fixtures.hpp"
@@ -164,7 +165,27 @@ TEST_CASE("the same stream gives the same people, and those who are fast are so 
   }
   CHECK(faster >= pairs - 1);  // the first one is compared with nobody
   CHECK(pairs > count / 3);
-  CHECK(headway == doctest::Approx(1.32).epsilon(0.03));  // 1.3 s, and no less than 0.4 s
+  CHECK(headway == doctest::Approx(1.32).epsilon(0.03));
   for (int i = 0; i < 14 * count; ++i) (void)cb::uniform01(draws);
   CHECK(draws() == random());
+}
+
+TEST_CASE("a population that no driver can be drawn from says what is wrong when it is drawn from") {
+  using cb::TruncatedNormal, cb::Uniform;
+  struct Wrong {
+    cb::Distribution drawn;
+    char const* sentence;
+  };
+  for (auto const& [drawn, sentence] :
+       {Wrong{TruncatedNormal{std::numeric_limits<double>::quiet_NaN(), 1.0, 0.0, 2.0}, "mean: is nan"},
+        Wrong{TruncatedNormal{1.0, 1.0, 2.0, 1.0}, "its low is above its high"},
+        Wrong{TruncatedNormal{1.0, -1.0, 0.0, 2.0}, "deviation: is -1"}, Wrong{Uniform{2.0, 1.0}, "below low"},
+        Wrong{Uniform{-3.0, 1.0}, "draws down to -3 s; keep it in [0, 20] s"},
+        Wrong{TruncatedNormal{1.0, 1.0}, "draws down to -inf s"}}) {
+    auto people = cb::presets::town_cars();
+    people.time_headway = drawn;
+    cb::RandomStream random(1, 0, 0);
+    CHECK_THROWS_WITH_AS((void)people.draw(random), doctest::Contains("population.time_headway"), cb::ParameterError);
+    CHECK_THROWS_WITH_AS((void)people.draw(random), doctest::Contains(sentence), cb::ParameterError);
+  }
 }

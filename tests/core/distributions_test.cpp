@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/core/distribution.hpp"
 #include "cambium/core/random.hpp"
 
 using namespace cambium;
@@ -178,4 +179,26 @@ TEST_CASE("draws are the same bits on every platform, compiler and optimisation 
   CHECK(uniform == 0x1.8777a039ee46bp+16);
   CHECK(normal == 0x1.895de5e5b0003p+17);
   CHECK(exponential == 0x1.17182d4a136e9p+17);
+}
+
+TEST_CASE("a truncated normal distribution is the normal one between its bounds") {
+  auto const below = [](double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); };
+  for (double z = -39.0; z < 9.0; z += 0.0137) {
+    CAPTURE(z);
+    CHECK(std::abs(detail::normal_probability(z) - below(z)) < 1e-15);
+    if (z < 0.0 && z > -37.0) CHECK(detail::normal_probability(z) == doctest::Approx(below(z)).epsilon(1e-8));
+  }
+  for (TruncatedNormal const drawn : {TruncatedNormal{34.0, 7.0, 24.0, 56.0}, TruncatedNormal{1.0, 0.5, 2.0, 2.2},
+                                      TruncatedNormal{-1.0, 3.0, -infinity, 0.5}}) {
+    auto const at = [&](double x) { return below((x - drawn.mean) / drawn.deviation); };
+    CHECK(kolmogorov_smirnov(
+              drawn, [&](double x) { return (at(x) - at(drawn.low)) / (at(drawn.high) - at(drawn.low)); }, 5) < 1.95);
+  }
+  RandomStream stream(1, 2, 3), same(1, 2, 3);
+  CHECK(TruncatedNormal{3.0, 2.0}(stream) == doctest::Approx(Normal{3.0, 2.0}(same)).epsilon(1e-12));
+  CHECK(TruncatedNormal{3.0, 0.0, 3.0, 3.0}(stream) == 3.0);
+  CHECK(TruncatedNormal{3.0, 0.0, 1.0, 2.0}(stream) == 2.0);
+  CHECK(TruncatedNormal{3.0, 1.0, 90.0, 91.0}(stream) == 90.0);
+  CHECK(TruncatedNormal{3.0, 1.0, -91.0, -90.0}(stream) == -90.0);
+  CHECK_THROWS_AS(check_parameters(TruncatedNormal{.low = 2.0, .high = 1.0}), ParameterError);
 }

@@ -113,23 +113,6 @@ TEST_CASE("a key that names no number, or one out of range, is an error with the
   CHECK(refusal(Search{}, "discount", 1.5) == "f.json: discount: is 1.5; give a value in [0, 1]");
   CHECK(refusal(Narrow{}, "width", 1e300) == "f.json: width: is inf m; give a value in (-inf, inf) m");
   CHECK(refusal(Search{}, "depth", 4.0) == "f.json: depth: is no real number; name another parameter");
-  CHECK(refusal(Search{}, "speed.clipped_normal.low", 0.5).find("give one of uniform") != std::string::npos);
+  CHECK(refusal(Search{}, "speed.truncated_normal.low", 0.5).find("give one of uniform") != std::string::npos);
   CHECK(refusal(Search{}, "speed.low", 0.5).find("give one of uniform") != std::string::npos);
-}
-
-TEST_CASE("a clipped normal distribution stays within its bounds, and is normal between them") {
-  RandomStream random(3, 0, 0);
-  Distribution const drawn = ClippedNormal{.mean = 10.0, .deviation = 2.0, .low = 8.0, .high = 13.0};
-  int low = 0, below_mean = 0;
-  constexpr int draws = 20'000;
-  for (int i = 0; i < draws; ++i) {
-    double const x = drawn(random);
-    CHECK(x >= 8.0);
-    CHECK(x <= 13.0);
-    low += x == 8.0;
-    below_mean += x < 10.0;
-  }
-  CHECK(static_cast<double>(low) / draws == doctest::Approx(0.1587).epsilon(0.06));  // of a normal, 1 deviation below
-  CHECK(static_cast<double>(below_mean) / draws == doctest::Approx(0.5).epsilon(0.03));
-  CHECK_THROWS_AS(check_parameters(ClippedNormal{.low = 2.0, .high = 1.0}), ParameterError);
 }

@@ -68,7 +68,7 @@ TEST_CASE("kinds of drivers have their shares, vehicles and drawn parameters") {
                   .traffic = {.end = 600.0, .speed = Uniform{18.0, 22.0}, .mix = {.truck_share = 0.0}},
                   .drivers = {FlowDriver{.share = 3.0,
                                          .behavior = Mobil{},
-                                         .drawn = {{"law.desired_speed", ClippedNormal{28.0, 3.0, 24.0, 33.0}},
+                                         .drawn = {{"law.desired_speed", TruncatedNormal{28.0, 3.0, 24.0, 33.0}},
                                                    {"lateral.rule.politeness", Uniform{0.1, 0.2}}}},
                               FlowDriver{.share = 1.0,
                                          .vehicle = FlowDriver::Vehicle::truck,
@@ -215,7 +215,6 @@ TEST_CASE("what a flow cannot do is an error that says where and what to do") {
   second[0].drivers[0].drawn.push_back({"politness", Uniform{0.0, 1.0}});
   CHECK(refusal("highway.xodr", second).find("recipe.flows[0].drivers[0].drawn[1]: politness: there is no number") ==
         0);
-  CHECK(
-      refusal("highway.xodr", with({"law.time_headway", ClippedNormal{1.0, 0.5}})).find("law.time_headway: is -inf") !=
-      std::string::npos);
+  CHECK(refusal("highway.xodr", with({"law.time_headway", TruncatedNormal{1.0, 0.5}}))
+            .find("law.time_headway: is -inf") != std::string::npos);
 }

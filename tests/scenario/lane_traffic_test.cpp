@@ -93,5 +93,5 @@ TEST_CASE("bounds that contradict each other, and values out of range, are refus
   CHECK_THROWS_WITH_AS((void)(LaneTraffic{.mix = {.truck_share = 1.5}}.sample(random)),
                        doctest::Contains("truck_share"), cb::ParameterError);
   CHECK_THROWS_WITH_AS((void)(LaneTraffic{.speed = cb::Uniform{-1, 8}}.sample(random)),
-                       doctest::Contains("lane_traffic.speed: draws up to -1 m/s"), cb::ParameterError);
+                       doctest::Contains("lane_traffic.speed: draws down to -1 m/s"), cb::ParameterError);
 }

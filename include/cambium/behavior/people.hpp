@@ -13,21 +13,21 @@ namespace cambium {
 /// are car drivers on motorways. "Fitted" are parameters that nobody observes as such: they were chosen so that traffic
 /// comes into the bands of the sources named, see the table in behavior/README.md.
 struct Population {
-  Distribution desired_speed = ClippedNormal{34.5, 7.5, 27.0, 56.0};          // fitted: Heidemann 1987; BASt 2010-14
-  Distribution speed_factor = ClippedNormal{1.06, 0.1, 0.8, 1.4};             // fitted: DfT 2019
-  Distribution time_headway = ClippedNormal{0.97, 0.35, 0.5, 2.5};            // fitted: Wasielewski 1979; HCM
-  Distribution minimum_gap = ClippedNormal{2.0, 0.5, 1.0, 4.0};               // Treiber, Kesting 2013; spread: own
-  Distribution maximum_acceleration = ClippedNormal{1.2, 0.25, 0.7, 2.0};     // Treiber, Kesting: MovSim's ACC cars
-  Distribution comfortable_deceleration = ClippedNormal{2.0, 0.4, 1.2, 3.0};  // the same
-  Distribution politeness = Uniform{0.0, 0.1};                                // fitted: Knoop et al. 2012
-  Distribution threshold = Uniform{0.2, 0.35};                                // fitted: Knoop et al. 2012
-  Distribution change_duration = ClippedNormal{5.8, 1.4, 3.0, 9.0};           // Toledo, Zohar 2007
-  Distribution lateral_acceleration = ClippedNormal{2.7, 0.4, 1.8, 4.0};      // own
-  Distribution time_margin = ClippedNormal{0.5, 0.15, 0.2, 1.0};              // fitted: HCM, exh. 20-17
-  Distribution minor_road_margin = ClippedNormal{3.0, 0.5, 1.5, 4.5};         // fitted: HCM, exh. 20-17
-  Distribution reaction = ClippedNormal{0.8, 0.2, 0.4, 1.2};                  // Gates et al. 2007
-  Distribution rolling_speed = ClippedNormal{2.4, 0.4, 0.0, 3.4};             // fitted: HCM, exh. 20-18
-  Distribution signal_braking = ClippedNormal{3.6, 0.3, 3.0, 4.5};            // Gates et al. 2007
+  Distribution desired_speed = TruncatedNormal{34.0, 7.0, 24.0, 56.0};          // fitted: Heidemann 1987; BASt 2010-14
+  Distribution speed_factor = TruncatedNormal{1.06, 0.1, 0.8, 1.4};             // fitted: DfT 2019
+  Distribution time_headway = TruncatedNormal{0.76, 0.44, 0.5, 2.5};             // fitted: Wasielewski 1979; HCM
+  Distribution minimum_gap = TruncatedNormal{2.0, 0.5, 1.0, 4.0};               // Treiber, Kesting 2013; spread: own
+  Distribution maximum_acceleration = TruncatedNormal{1.2, 0.25, 0.7, 2.0};     // Treiber, Kesting: MovSim's ACC cars
+  Distribution comfortable_deceleration = TruncatedNormal{2.0, 0.4, 1.2, 3.0};  // the same
+  Distribution politeness = Uniform{0.0, 0.1};                                  // fitted: Knoop et al. 2012
+  Distribution threshold = Uniform{0.2, 0.35};                                  // fitted: Knoop et al. 2012
+  Distribution change_duration = TruncatedNormal{5.8, 1.4, 3.0, 9.0};           // Toledo, Zohar 2007
+  Distribution lateral_acceleration = TruncatedNormal{2.7, 0.4, 1.8, 4.0};      // own
+  Distribution time_margin = TruncatedNormal{0.5, 0.15, 0.2, 1.0};              // fitted: HCM, exh. 20-17
+  Distribution minor_road_margin = TruncatedNormal{3.0, 0.5, 1.5, 4.5};         // fitted: HCM, exh. 20-17
+  Distribution reaction = TruncatedNormal{0.8, 0.2, 0.4, 1.2};                  // Gates et al. 2007
+  Distribution rolling_speed = TruncatedNormal{2.4, 0.4, 0.0, 3.4};             // fitted: HCM, exh. 20-18
+  Distribution signal_braking = TruncatedNormal{3.6, 0.3, 3.0, 4.5};            // Gates et al. 2007
   double bias = 0.2;
   double others_headway = 0.8;
   double lowest_acceleration = -8.0;
@@ -83,8 +83,9 @@ struct Population {
     check_draws(signal_braking, {0.1, 20}, "signal_braking", "m/s^2", where);
   }
 
-  /// The next of these people. Takes fourteen draws.
+  /// The next of these people. Takes fourteen draws. Throws `ParameterError` if these are no people, see `check`.
   [[nodiscard]] presets::Temperament draw(RandomStream& random) const {
+    check_parameters(*this);
     presets::Temperament one;
     auto same = random;  // one draw for both: fast is fast
     one.idm.desired_speed = desired_speed(same);
@@ -118,15 +119,15 @@ namespace presets {
 /// Drivers of lorries on motorways: speeds up to the limiter; the others around MovSim's lorries, spread: own.
 [[nodiscard]] inline Population motorway_trucks() {
   Population p;
-  p.desired_speed = ClippedNormal{24.2, 1.0, 22.0, 26.0};
+  p.desired_speed = TruncatedNormal{24.2, 1.0, 22.0, 26.0};
   p.bias = 0.6;
-  p.speed_factor = ClippedNormal{1.0, 0.04, 0.9, 1.1};
-  p.time_headway = ClippedNormal{1.7, 0.4, 0.9, 3.0};
-  p.minimum_gap = ClippedNormal{3.0, 0.7, 1.5, 5.0};
-  p.maximum_acceleration = ClippedNormal{0.8, 0.15, 0.5, 1.2};
-  p.comfortable_deceleration = ClippedNormal{1.6, 0.3, 1.0, 2.2};
-  p.lateral_acceleration = ClippedNormal{2.0, 0.2, 1.5, 2.6};
-  p.signal_braking = ClippedNormal{3.0, 0.3, 2.4, 3.6};
+  p.speed_factor = TruncatedNormal{1.0, 0.04, 0.9, 1.1};
+  p.time_headway = TruncatedNormal{1.7, 0.4, 0.9, 3.0};
+  p.minimum_gap = TruncatedNormal{3.0, 0.7, 1.5, 5.0};
+  p.maximum_acceleration = TruncatedNormal{0.8, 0.15, 0.5, 1.2};
+  p.comfortable_deceleration = TruncatedNormal{1.6, 0.3, 1.0, 2.2};
+  p.lateral_acceleration = TruncatedNormal{2.0, 0.2, 1.5, 2.6};
+  p.signal_braking = TruncatedNormal{3.0, 0.3, 2.4, 3.6};
   p.lowest_acceleration = -6.0;
   return p;
 }
@@ -135,17 +136,17 @@ namespace presets {
 /// Gates et al. 2007; speeds: DfT 2019.
 [[nodiscard]] inline Population town_cars() {
   Population p;
-  p.time_headway = ClippedNormal{1.3, 0.6, 0.4, 3.0};
-  p.maximum_acceleration = ClippedNormal{2.3, 0.4, 1.3, 3.3};
-  p.comfortable_deceleration = ClippedNormal{2.6, 0.4, 1.4, 3.4};
-  p.speed_factor = ClippedNormal{1.02, 0.12, 0.7, 1.4};
+  p.time_headway = TruncatedNormal{0.85, 0.95, 0.4, 3.2};
+  p.maximum_acceleration = TruncatedNormal{2.3, 0.4, 1.3, 3.3};
+  p.comfortable_deceleration = TruncatedNormal{2.6, 0.4, 1.4, 3.4};
+  p.speed_factor = TruncatedNormal{1.02, 0.12, 0.7, 1.4};
   return p;
 }
 
 /// Drivers of lorries and buses in town: SUMO's acceleration of lorries, 1.3 m/s^2.
 [[nodiscard]] inline Population town_trucks() {
   auto p = motorway_trucks();
-  p.maximum_acceleration = ClippedNormal{1.3, 0.2, 0.8, 1.8};
+  p.maximum_acceleration = TruncatedNormal{1.3, 0.2, 0.8, 1.8};
   return p;
 }
 

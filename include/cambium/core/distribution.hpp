@@ -10,22 +10,23 @@
 
 namespace cambium {
 
-/// A normal distribution whose draws are clipped: what is below `low` becomes `low`, what is above `high`, `high`.
-struct ClippedNormal {
+/// A normal distribution of which only what is between `low` and `high` is drawn, by inversion: takes one draw, and a
+/// larger random number never gives a smaller value. Bounds that are both farther than 8 deviations on one side of the
+/// mean draw the nearer one.
+struct TruncatedNormal {
   double mean = 0.0;
   double deviation = 1.0;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
-  static constexpr char const* name = "clipped_normal";
+  static constexpr char const* name = "truncated_normal";
   static constexpr auto parameters() {
-    using P = ClippedNormal;
+    using P = TruncatedNormal;
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    return parameter_list(
-        parameter("mean", &P::mean, "-", any_finite, "before clipping"),
-        parameter("deviation", &P::deviation, "-", non_negative, "standard deviation before clipping"),
-        parameter("low", &P::low, "-", Range{-infinity, infinity}, "lowest value"),
-        parameter("high", &P::high, "-", Range{-infinity, infinity}, "highest value"));
+    return parameter_list(parameter("mean", &P::mean, "-", any_finite, "of the whole normal distribution"),
+                          parameter("deviation", &P::deviation, "-", non_negative, "standard deviation of the whole"),
+                          parameter("low", &P::low, "-", Range{-infinity, infinity}, "lowest value"),
+                          parameter("high", &P::high, "-", Range{-infinity, infinity}, "highest value"));
   }
   /// Throws `ParameterError` if `low` is above `high`.
   void check(std::string const& where) const {
@@ -34,12 +35,21 @@ struct ClippedNormal {
 
   template <BitStream Stream>
   [[nodiscard]] double operator()(Stream& stream) const {
-    return std::clamp(Normal{mean, deviation}(stream), low, high);
+    double const u = (static_cast<double>(stream() >> 12) + 0.5) * 0x1p-52;  // exact, never 0 or 1
+    double const least = probability_below(low), most = probability_below(high);
+    double const p = std::fma(most - least, u, least);
+    double const value = p > 0.0 && p < 1.0 ? std::fma(deviation, detail::normal_quantile(p), mean) : mean;
+    return std::max(low, std::min(value, high));
+  }
+
+ private:
+  [[nodiscard]] double probability_below(double bound) const {
+    return bound == mean ? 0.5 : detail::normal_probability((bound - mean) / deviation);
   }
 };
 
 /// How a number is drawn. Takes one draw. In files: {"uniform": {"low": 10, "high": 20}}.
-struct Distribution : OneOf<Uniform, ClippedNormal> {
+struct Distribution : OneOf<Uniform, TruncatedNormal> {
   using OneOf::OneOf;
 
   template <BitStream Stream>
@@ -58,10 +68,14 @@ struct Distribution : OneOf<Uniform, ClippedNormal> {
 /// Throws `ParameterError` at `where` unless all that a distribution draws is within `range`.
 inline void check_draws(Distribution const& drawn, Range range, char const* name, char const* unit,
                         std::string const& where) {
-  for (double const bound : {drawn.lowest(), drawn.highest()})
+  for (bool const low : {true, false}) {
+    double const bound = low ? drawn.lowest() : drawn.highest();
     if (!(bound >= range.low && bound <= range.high))
-      throw ParameterError(where + "." + name, "draws up to " + detail::with_unit(detail::number_text(bound), unit),
-                           "keep it in " + detail::with_unit(detail::range_text({name, unit, range, ""}), unit));
+      throw ParameterError(
+          where + "." + name,
+          (low ? "draws down to " : "draws up to ") + detail::with_unit(detail::number_text(bound), unit),
+          "keep it in " + detail::with_unit(detail::range_text({name, unit, range, ""}), unit));
+  }
 }
 
 }  // namespace cambium
