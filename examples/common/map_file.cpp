@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <iostream>
+#include <system_error>
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
@@ -16,6 +17,8 @@
 std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file,
                                                        std::optional<cambium::map::Lanelet2Origin> const& origin) {
   std::filesystem::path const path(file);
+  if (std::error_code none; std::filesystem::is_directory(path, none))
+    throw cambium::MapError(file, "it is a folder", "give a map in it: a file that ends in .xodr, .osm, .xml or .csv");
   if (path.extension() == ".csv") {
     cambium::MapBuilder builder(path.stem().string());
     builder.add_road(lane_along(cambium::map::load_center_line_csv(file)));

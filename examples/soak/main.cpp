@@ -19,6 +19,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cambium/core/text.hpp"
 #include "cambium/viewer/html_replay.hpp"
 
 #include "../common/command_line.hpp"
@@ -134,9 +135,9 @@ Row row_of(Site const& site, std::vector<Result> const& runs) {
 
 std::string repeat_command(Settings const& settings, std::string const& file, std::uint64_t run,
                            Finding const& finding) {
-  return "examples/run soak --map " + file + " --seed " + std::to_string(settings.seed) + " --replay " +
+  return "examples/run soak --map " + cb::shell_word(file) + " --seed " + std::to_string(settings.seed) + " --replay " +
          std::to_string(run) + " --step " + std::to_string(finding.step) +
-         (settings.parameters.path().empty() ? "" : " --parameters " + settings.parameters.path());
+         (settings.parameters.path().empty() ? "" : " --parameters " + cb::shell_word(settings.parameters.path()));
 }
 
 /// Prints the findings, of each map the first `most` of each kind, which suffices to see what is wrong.

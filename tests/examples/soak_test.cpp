@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <iomanip>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -69,7 +70,7 @@ TEST_CASE("the long test repeats one run up to a step, and writes its replay") {
 TEST_CASE("the long test fails where it finds a collision, and its command repeats that") {
   Program const program("soak");
   browser::TemporaryFolder const folder;
-  std::string const map = CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr", drivers = folder.file("drivers.json");
+  std::string const map = CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr", drivers = folder.file("its drivers.json");
   cambium::write_file(drivers, R"({"urban_driver": {"law": {"lowest_acceleration": -1, "time_headway": 0.1}}})");
   auto const run = program.run({"--map", map, "--minutes", "2", "--seed", "3", "--parameters", drivers});
   CHECK(run.code == 1);
@@ -78,7 +79,7 @@ TEST_CASE("the long test fails where it finds a collision, and its command repea
   auto const begin = run.out.find(name) + name.size();
   std::istringstream command(run.out.substr(begin, run.out.find('\n', begin) - begin));
   std::vector<std::string> words{"--out", folder.file("out")};
-  for (std::string word; command >> word;) words.push_back(word);
+  for (std::string word; command >> std::quoted(word, '\'');) words.push_back(word);
   auto const again = program.run(words);
   CHECK(again.code == 0);
   CHECK(has(again.out, "collision"));
@@ -90,6 +91,7 @@ TEST_CASE("the long test names what is wrong with its options") {
   for (auto const& words : {std::vector<std::string>{"--minutes", "0"},
                             {"--seed", "x"},
                             {"--map", "nowhere.xodr"},
+                            {"--map", CAMBIUM_SOURCE_DIR "/maps"},
                             {"--replay", "1"},
                             {"--step", "5"},
                             {"--minutes", "1", "--hours", "1"},

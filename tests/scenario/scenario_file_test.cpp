@@ -140,7 +140,7 @@ TEST_CASE("an error in a scenario file says where it is and what to do") {
   CHECK(refusal(with_agents(good)) == "no error");
   CHECK(
       refusal(with_agents(R"({"position": {"x": 20, "y": -5.25}, "behavior": "imd"})")) ==
-      "f.json: scenario_set.scenarios[0].agents[0].behavior: there is no \"imd\" here; There are: idm_classic, mobil");
+      "f.json: scenario_set.scenarios[0].agents[0].behavior: there is no \"imd\" here; give one of idm_classic, mobil");
   CHECK(refusal(with_agents(R"({"position": {"x": 20, "y": -5.25}, "behavior": {"mobil": {"politness": 1}}})")) ==
         "f.json: scenario_set.scenarios[0].agents[0].behavior.mobil: has no field \"politness\"; is it "
         "lateral.rule.politeness?");

@@ -41,9 +41,6 @@ struct BenchmarkDefaults {
   Executor executor{};                          ///< where the jobs run, in place of threads; see `on_ranks`
 };
 
-/// `word` for a shell.
-[[nodiscard]] std::string shell_word(std::string const& word);
-
 namespace detail {
 
 /// What the command line says.

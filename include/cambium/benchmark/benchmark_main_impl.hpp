@@ -1,11 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -44,14 +42,6 @@
 #endif
 
 namespace cambium {
-
-CAMBIUM_COLD std::string shell_word(std::string const& word) {
-  auto const is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("_-./,:=+", c) != nullptr; };
-  if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
-  std::string quoted = "'";
-  for (char const c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 namespace detail {
 

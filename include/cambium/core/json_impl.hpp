@@ -223,7 +223,8 @@ class JsonReader {
       auto const known = alternative_names(type);
       auto const near = nearest_names(name, known);
       throw ParameterError(where(path), "there is no \"" + name + "\" here",
-                           (near.empty() ? "" : suggestion(name, known) + " ") + "There are: " + joined(known, ", "));
+                           near.empty() ? "give one of " + joined(known, ", ")
+                                        : suggestion(name, known) + " There are: " + joined(known, ", "));
     }
     auto const& model = type.alternatives[chosen]();
     auto const* const blank = type.index(usual) == chosen ? type.held(usual) : model.usual();

@@ -21,6 +21,15 @@ namespace cambium {
   return text;
 }
 
+/// `word` for a shell: quoted where it has blanks or signs that a shell would read.
+[[nodiscard]] inline std::string shell_word(std::string const& word) {
+  constexpr char const* plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+";
+  if (!word.empty() && word.find_first_not_of(plain) == word.npos) return word;
+  std::string quoted = "'";
+  for (char const c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 }  // namespace cambium
 
 /// Parsing of words and numbers in user text.
