@@ -170,15 +170,21 @@ TEST_CASE("bad parameters are refused before the first draw, with the key, the v
 
 TEST_CASE("draws are the same bits on every platform, compiler and optimisation level") {
   RandomStream stream(42, 3, 17);
-  double uniform = 0.0, normal = 0.0, exponential = 0.0;
+  double uniform = 0.0, normal = 0.0, exponential = 0.0, truncated = 0.0, tail = 0.0;
   for (int i = 0; i < 100000; ++i) {  // a sum changes with the last bit of any of them
     uniform += Uniform{-1.0, 3.0}(stream);
     normal += Normal{2.0, 3.0}(stream);
     exponential += Exponential{0.7}(stream);
   }
+  for (int i = 0; i < 10000; ++i) {
+    truncated += TruncatedNormal{34.0, 7.0, 24.0, 56.0}(stream);
+    tail += TruncatedNormal{0.0, 1.0, 7.0, 9.0}(stream);
+  }
   CHECK(uniform == 0x1.8777a039ee46bp+16);
   CHECK(normal == 0x1.895de5e5b0003p+17);
   CHECK(exponential == 0x1.17182d4a136e9p+17);
+  CHECK(truncated == 0x1.55a55e0d060ebp+18);
+  CHECK(tail == 0x1.16d7505d78d6p+16);
 }
 
 TEST_CASE("a truncated normal distribution is the normal one between its bounds") {
@@ -188,8 +194,9 @@ TEST_CASE("a truncated normal distribution is the normal one between its bounds"
     CHECK(std::abs(detail::normal_probability(z) - below(z)) < 1e-15);
     if (z < 0.0 && z > -37.0) CHECK(detail::normal_probability(z) == doctest::Approx(below(z)).epsilon(1e-8));
   }
-  for (TruncatedNormal const drawn : {TruncatedNormal{34.0, 7.0, 24.0, 56.0}, TruncatedNormal{1.0, 0.5, 2.0, 2.2},
-                                      TruncatedNormal{-1.0, 3.0, -infinity, 0.5}}) {
+  for (TruncatedNormal const drawn :
+       {TruncatedNormal{34.0, 7.0, 24.0, 56.0}, TruncatedNormal{1.0, 0.5, 2.0, 2.2},
+        TruncatedNormal{-1.0, 3.0, -infinity, 0.5}, TruncatedNormal{0.0, 1.0, -9.0, -8.0}}) {
     auto const at = [&](double x) { return below((x - drawn.mean) / drawn.deviation); };
     CHECK(kolmogorov_smirnov(
               drawn, [&](double x) { return (at(x) - at(drawn.low)) / (at(drawn.high) - at(drawn.low)); }, 5) < 1.95);
@@ -198,6 +205,18 @@ TEST_CASE("a truncated normal distribution is the normal one between its bounds"
   CHECK(TruncatedNormal{3.0, 2.0}(stream) == doctest::Approx(Normal{3.0, 2.0}(same)).epsilon(1e-12));
   CHECK(TruncatedNormal{3.0, 0.0, 3.0, 3.0}(stream) == 3.0);
   CHECK(TruncatedNormal{3.0, 0.0, 1.0, 2.0}(stream) == 2.0);
+  for (double const low : {2.0, 6.0, 8.0, 20.0}) {
+    CAPTURE(low);
+    double last = low;
+    for (std::uint64_t bits : {0ull, 1ull << 62, 1ull << 63, ~0ull - (1ull << 50), ~0ull - (1ull << 14), ~0ull}) {
+      Constant one{bits}, other{~bits};
+      double const x = TruncatedNormal{0.0, 1.0, low, infinity}(one);
+      CHECK(x >= last);
+      CHECK(x == -TruncatedNormal{0.0, 1.0, -infinity, -low}(other));
+      last = x;
+    }
+    CHECK(last > low);
+  }
   CHECK(TruncatedNormal{3.0, 1.0, 90.0, 91.0}(stream) == 90.0);
   CHECK(TruncatedNormal{3.0, 1.0, -91.0, -90.0}(stream) == -90.0);
   CHECK_THROWS_AS(check_parameters(TruncatedNormal{.low = 2.0, .high = 1.0}), ParameterError);

@@ -15,7 +15,7 @@ namespace cambium {
 struct Population {
   Distribution desired_speed = TruncatedNormal{34.0, 7.0, 24.0, 56.0};          // fitted: Heidemann 1987; BASt 2010-14
   Distribution speed_factor = TruncatedNormal{1.06, 0.1, 0.8, 1.4};             // fitted: DfT 2019
-  Distribution time_headway = TruncatedNormal{0.76, 0.44, 0.5, 2.5};             // fitted: Wasielewski 1979; HCM
+  Distribution time_headway = TruncatedNormal{0.76, 0.44, 0.5, 2.5};            // fitted: Wasielewski 1979; HCM
   Distribution minimum_gap = TruncatedNormal{2.0, 0.5, 1.0, 4.0};               // Treiber, Kesting 2013; spread: own
   Distribution maximum_acceleration = TruncatedNormal{1.2, 0.25, 0.7, 2.0};     // Treiber, Kesting: MovSim's ACC cars
   Distribution comfortable_deceleration = TruncatedNormal{2.0, 0.4, 1.2, 3.0};  // the same
@@ -132,11 +132,11 @@ namespace presets {
   return p;
 }
 
-/// Drivers of cars in town: headways as Michael et al. 2000 saw; accelerations fitted to HCM's saturation flow and to
-/// Gates et al. 2007; speeds: DfT 2019.
+/// Drivers of cars in town: headways fitted to Michael et al. 2000; accelerations fitted to HCM's saturation flow and
+/// to Gates et al. 2007; speeds: DfT 2019.
 [[nodiscard]] inline Population town_cars() {
   Population p;
-  p.time_headway = TruncatedNormal{0.85, 0.95, 0.4, 3.2};
+  p.time_headway = TruncatedNormal{0.75, 1.05, 0.35, 3.3};
   p.maximum_acceleration = TruncatedNormal{2.3, 0.4, 1.3, 3.3};
   p.comfortable_deceleration = TruncatedNormal{2.6, 0.4, 1.4, 3.4};
   p.speed_factor = TruncatedNormal{1.02, 0.12, 0.7, 1.4};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -11,7 +12,7 @@
 namespace cambium {
 
 /// A normal distribution of which only what is between `low` and `high` is drawn, by inversion: takes one draw, and a
-/// larger random number never gives a smaller value. Bounds that are both farther than 8 deviations on one side of the
+/// larger random number never gives a smaller value. Bounds that are both farther than 37 deviations on one side of the
 /// mean draw the nearer one.
 struct TruncatedNormal {
   double mean = 0.0;
@@ -35,16 +36,21 @@ struct TruncatedNormal {
 
   template <BitStream Stream>
   [[nodiscard]] double operator()(Stream& stream) const {
-    double const u = (static_cast<double>(stream() >> 12) + 0.5) * 0x1p-52;  // exact, never 0 or 1
-    double const least = probability_below(low), most = probability_below(high);
-    double const p = std::fma(most - least, u, least);
-    double const value = p > 0.0 && p < 1.0 ? std::fma(deviation, detail::normal_quantile(p), mean) : mean;
-    return std::max(low, std::min(value, high));
+    bool const above = low > mean;  // drawn on the other side of the mean, where probabilities are small and exact
+    double const u = open_uniform01(stream);
+    double const least = probability_below(above ? high : low, above),
+                 most = probability_below(above ? low : high, above);
+    double const p = std::fma(most - least, above ? 1.0 - u : u, least);
+    if (!(p > 0.0 && p < 1.0)) return std::max(low, std::min(mean, high));
+    double const z = detail::normal_quantile(p);
+    return std::max(low, std::min(std::fma(deviation, above ? -z : z, mean), high));
   }
 
  private:
-  [[nodiscard]] double probability_below(double bound) const {
-    return bound == mean ? 0.5 : detail::normal_probability((bound - mean) / deviation);
+  [[nodiscard]] double probability_below(double bound, bool mirrored) const {
+    if (bound == mean) return 0.5;
+    double const z = (bound - mean) / deviation;
+    return detail::normal_probability(mirrored ? -z : z);
   }
 };
 

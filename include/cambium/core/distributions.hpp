@@ -37,6 +37,12 @@ template <BitStream Stream>
   return static_cast<double>(stream() >> 11) * 0x1p-53;
 }
 
+/// A uniform number in (0, 1): never an end.
+template <BitStream Stream>
+[[nodiscard]] constexpr double open_uniform01(Stream& stream) {
+  return (static_cast<double>(stream() >> 12) + 0.5) * 0x1p-52;  // exact
+}
+
 /// A uniform integer in [0, n) without bias (Lemire 2019, "Fast random integer generation in an interval"). `n` > 0.
 /// Takes one draw; needs another with a probability below n / 2^32.
 template <BitStream Stream>
@@ -149,8 +155,7 @@ struct Normal {
 
   template <BitStream Stream>
   [[nodiscard]] double operator()(Stream& stream) const {
-    double const p = (static_cast<double>(stream() >> 12) + 0.5) * 0x1p-52;  // exact, never 0 or 1
-    return std::fma(deviation, detail::normal_quantile(p), mean);
+    return std::fma(deviation, detail::normal_quantile(open_uniform01(stream)), mean);
   }
 };
 
