@@ -391,20 +391,20 @@ struct ChangeLanes {
   }
 
   /// The longest change to the lane of `there` [m] that does not leave the road where the two lanes become one: twice
-  /// the way to where they are half as far apart as here; infinite if a change is over by then.
+  /// the way to where they are half as far apart as here, on a grid of 5 m; infinite if a change is over by then.
   template <class View>
   [[nodiscard]] double until_together(View const& view, map::LanePlace const& there) const {
     constexpr double step = 5.0;  // [m]
     double const wanted = course.begin(there.corridor, view.shape(), std::max(0.0, view.state().speed)).left;
     auto const &from = view.corridor().center, &to = view.road().corridors[there.corridor].center;
     auto hint = view.place().segment, hint_there = there.segment;
-    auto const apart = [&](double way) {
+    auto const apart = [&](double way) {  // across: in a bend the two are not at the same place along
       auto const here = from.pose(view.place().s + way, hint), beside = to.pose(there.s + way, hint_there);
-      return (here.position() - beside.position()).norm();
+      return std::abs(geometry::to_local(here, beside.position()).y());
     };
     double const half = 0.5 * apart(0.0);
     for (double way = step; 2.0 * way < wanted; way += step)
-      if (apart(way) < half) return 2.0 * way;
+      if (apart(way) < half) return 2.0 * (way - step);
     return infinite;
   }
 

@@ -177,7 +177,7 @@ struct LaneChangeCourse {
   /// present course at the vehicle.
   [[nodiscard]] LaneChange back(CorridorId home, geometry::Shape const& shape, double speed, double lateral,
                                 float bend) const {
-    constexpr double least_share = 0.6;  // of a car's course: a bicycle's
+    constexpr double least_share = 0.6;  // of a car's shortest course, for a bicycle
     double const share = std::clamp(shape.front / geometry::car().front, least_share, 1.0);
     double const least =
         detail::least_course_length(share * minimum_length, shape, detail::longer_by_front_back(lateral));
