@@ -93,11 +93,16 @@ def measure(name, settings):
 
 
 def measure_cambium(path, settings):
-    """Writes the file as `examples/run field` does, whose status is 1 where a row is out of its band."""
+    """Writes the file as `examples/run field` does, whose status is 1 where a row is out of its band, or it was not built."""
     only = ["--only", settings.only] if settings.only else []
-    words = [*FIELD, "--json", path, "--seed", str(settings.seed), "--threads", str(settings.threads), *only]
-    if subprocess.run(words, stdout=subprocess.DEVNULL).returncode not in (0, 1):
-        raise Error(f"{' '.join(words)}: failed; what it says stands above")
+    with tempfile.TemporaryDirectory() as folder:
+        new = os.path.join(folder, "rows.json")
+        words = [*FIELD, "--json", new, "--seed", str(settings.seed), "--threads", str(settings.threads), *only]
+        status = subprocess.run(words, stdout=subprocess.DEVNULL).returncode
+        if status not in (0, 1) or not os.path.exists(new):
+            raise Error(f"{' '.join(words)}: failed; what it says stands above")
+        with open(new, encoding="utf-8") as file:
+            write(path, file.read())
 
 
 def fill(said, path, settings):
@@ -139,8 +144,8 @@ def table(rows):
     return "\n".join(lines) + "\n"
 
 
-def put_into(path, text):
-    """Replaces what stands between the two lines."""
+def around_table(path):
+    """What stands before and behind the two lines of a file."""
     try:
         with open(path, encoding="utf-8") as file:
             old = file.read()
@@ -149,7 +154,7 @@ def put_into(path, text):
     parts = re.split(rf"^({re.escape(BEGIN)}|{re.escape(END)})$", old, flags=re.M)
     if parts[1::2] != [BEGIN, END]:
         raise Error(f"{path}: needs one line {BEGIN} and, below it, one line {END}: enter them where the table is to stand")
-    write(path, f"{parts[0]}{BEGIN}\n{text}{END}{parts[4]}")
+    return parts[0], parts[4]
 
 
 def arguments(words):
@@ -179,6 +184,10 @@ def arguments(words):
 
 def main(words):
     settings = arguments(words)
+    if settings.into:
+        before, behind = around_table(settings.into)
+        if settings.only:
+            raise Error("--into: puts the whole table there: leave out --only")
     if settings.field:
         simulation.version()  # fails at once where SUMO is not installed, not after minutes
         measure_cambium(settings.json, settings)
@@ -190,7 +199,7 @@ def main(words):
     if settings.markdown:
         print(table(said["rows"]), end="")
     if settings.into:
-        put_into(settings.into, table(said["rows"]))
+        write(settings.into, f"{before}{BEGIN}\n{table(said['rows'])}{END}{behind}")
 
 
 if __name__ == "__main__":

@@ -22,18 +22,19 @@ from .motorway import straight_road
 from .simulation import CARS, Simulation, cars_and_trucks, element, flow, follower_headways, mean, quantile
 
 WARM_UP, DURATION = 120.0, 1800.0  # [s]
+ALL_WAY_RUNS, ALL_WAY_DURATION = 6, 900.0
 YELLOW = 3.0  # [s]
 
 
 def following(settings, folder):
     """Headways of followers on a street."""
-    warm_up, headways = 300.0, []
+    warm_up, duration, headways = 300.0, 5400.0, []
     for number, per_hour in enumerate((500, 800, 1100), 1):
         simulation = Simulation(folder, settings)
         straight_road(simulation, 2000.0, 1, TOWN_LIMIT)
         simulation.detect("a_0", 1500.0)
-        traffic = [CARS, element("route", id="all", edges="a"), flow("cars", "all", per_hour, warm_up + DURATION)]
-        simulation.run(traffic, warm_up + DURATION, settings.seed + number)
+        traffic = [CARS, element("route", id="all", edges="a"), flow("cars", "all", per_hour, warm_up + duration)]
+        simulation.run(traffic, warm_up + duration, settings.seed + number)
         headways += follower_headways(simulation.passages(warm_up), 4.0)
     return [mean(headways), sum(headway < 1.0 for headway in headways) / len(headways)]
 
@@ -286,20 +287,21 @@ def roundabout_entry(settings, folder):
 
 def all_way_headway(settings, folder, others, seed, types=CARS):
     """Mean headway [s] of those who leave an all-way stop from arm 4, all straight on, with queues on these other arms."""
+    demand = 1800.0  # [1/h] more than passes, and at random: so the arms do not begin in step
     straight = {arm: (f"{arm}i", f"{(arm + 1) % 4 + 1}o") for arm in range(1, 5)}
-    streams = [Stream(straight[arm], None) for arm in (4, *others)]
-    junction = Junction(settings, folder, crossing("allway_stop"), streams, WARM_UP + DURATION, seed, types)
-    return 3600.0 / per_hour(junction.at_line(0))
+    streams = [Stream(straight[arm], demand) for arm in (4, *others)]
+    junction = Junction(settings, folder, crossing("allway_stop"), streams, WARM_UP + ALL_WAY_DURATION, seed, types)
+    return 3600.0 / per_hour(junction.at_line(0), ALL_WAY_DURATION)
 
 
 def all_way_stop(settings, folder):
     found, seed = [], settings.seed
-    # With queues on all arms, SUMO's vehicles keep to the order in which the first ones happened to come: five runs.
-    for arms in ([()], [(2,)], [(1,), (3,)], [(1, 2), (2, 3), (1, 3)], [(1, 2, 3)] * 5):
+    # With queues on all arms, vehicles keep to the order in which the first ones happened to come: several runs of each.
+    for arms in [()], [(2,)], [(1,), (3,)], [(1, 2), (2, 3), (1, 3)], [(1, 2, 3)]:
         headways = []
-        for others in arms:
+        for run in range(ALL_WAY_RUNS):
             seed += 1
-            headways.append(all_way_headway(settings, folder, others, seed))
+            headways.append(all_way_headway(settings, folder, arms[run % len(arms)], seed))
         found.append(mean(headways))
     return found
 
@@ -312,7 +314,7 @@ def junctions_with_trucks(settings, folder):
         seed += 1
         junction = drive_movement(settings, folder, one, demand, seed, types)
         stops.append(share_of_formula(junction, one.critical + share, one.follow_up + 0.9 * share))
-    for _ in range(5):
+    for _ in range(ALL_WAY_RUNS):
         seed += 1
         headways.append(all_way_headway(settings, folder, (1, 2, 3), seed, types))
     entering, circulating = roundabout_flows(settings, folder, 500.0, seed + 1, types)

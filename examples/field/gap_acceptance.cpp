@@ -115,8 +115,12 @@ std::vector<Row> roundabout_entry(std::uint64_t seed) {
   return rows;
 }
 
+/// With queues on all arms drivers settle for many minutes into going one by one or two by two: several runs of each.
+constexpr std::size_t all_way_runs = 6;
+
 /// Mean headway [s] of those who leave an all-way stop from arm 4, all straight on, with queues on these other arms.
-double all_way_headway(std::string const& others, People people, double duration, std::uint64_t seed) {
+double all_way_headway(std::string const& others, People people, std::uint64_t seed) {
+  constexpr double duration = 900.0;
   constexpr double demand = 1800.0;  // [1/h] more than passes, and at random: so the arms do not begin in step
   std::vector<Stream> streams{{{"4", "42", "2"}, demand}};
   for (char const arm : others) {
@@ -129,9 +133,6 @@ double all_way_headway(std::string const& others, People people, double duration
 }
 
 std::vector<Row> all_way_stop(std::uint64_t seed) {
-  // With queues on all arms drivers settle for many minutes into going one by one or two by two: several runs of each.
-  constexpr std::size_t runs = 6;
-  constexpr double duration = 900.0;
   struct Case {
     char const* name;
     std::vector<std::string> others;
@@ -144,8 +145,8 @@ std::vector<Row> all_way_stop(std::uint64_t seed) {
         Case{"queues on two other arms", {"12", "23", "13"}, 7.0, 0.5},
         Case{"queues on all arms", {"123"}, 9.6, 1.0}}) {
     std::vector<double> headways;
-    for (std::size_t run = 0; run < runs; ++run)
-      headways.push_back(all_way_headway(others[run % others.size()], town_people(), duration, ++seed));
+    for (std::size_t run = 0; run < all_way_runs; ++run)
+      headways.push_back(all_way_headway(others[run % others.size()], town_people(), ++seed));
     rows.push_back({std::string("all-way stop, headway with ") + name, headway - tolerance, headway + tolerance, "s",
                     "HCM 7th ed., exh. 21-15", moments(headways).mean});
   }
@@ -160,7 +161,7 @@ std::vector<Row> junctions_with_trucks(std::uint64_t seed) {
   for (auto const& movement : movements())
     stops.push_back(share_of_formula(drive_movement(movement, flow, duration, people, ++seed),
                                      movement.critical + share, movement.follow_up + 0.9 * share, duration));
-  for (int i = 0; i < 3; ++i) headways.push_back(all_way_headway("123", people, duration, ++seed));
+  for (std::size_t run = 0; run < all_way_runs; ++run) headways.push_back(all_way_headway("123", people, ++seed));
   auto const [entering, circulating] = roundabout_flows(500.0, people, ++seed);
   double const equivalents = 1.0 + share;  // of a vehicle, at two cars for a lorry
   return {{"two-way stop with 15 % lorries, capacity in shares", 0.85, 1.15, "-", "HCM 7th ed., eq. 20-30 and 20-31",

@@ -19,7 +19,7 @@ namespace {
 
 /// Headways of followers on a street.
 std::vector<Row> following(std::uint64_t seed) {
-  constexpr double warm_up = 300.0, duration = 1800.0, longest = 4.0;  // [s]
+  constexpr double warm_up = 300.0, duration = 5400.0, longest = 4.0;  // [s]
   std::vector<double> headways;
   for (double const demand : {500.0, 800.0, 1100.0}) {
     Observed street(straight_road(2000.0, 1, town_limit), town_people(), demand, ++seed, 1500.0);

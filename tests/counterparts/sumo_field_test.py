@@ -112,9 +112,14 @@ class Files(WithFolder):
             before, made, after = re.split("<!-- /?field -->", readme.read_text())
             self.assertEqual((before, after), ("before\n", "\nafter\n"))
             self.assertIn("| **2.5** |", made)
-            sumo_field.FIELD = [sys.executable, "-c", "import sys; sys.exit(2)"]
-            with self.assertRaisesRegex(simulation.Error, "failed; what it says stands above"):
-                self.fill([], experiments, "--field")
+            for status in (1, 2):  # 1: also where it could not be built, and wrote nothing
+                sumo_field.FIELD = [sys.executable, "-c", f"import sys; sys.exit({status})"]
+                with self.assertRaisesRegex(simulation.Error, "failed; what it says stands above"):
+                    self.fill([row("a")], experiments, "--field")
+            path = self.file(row("a"))
+            self.refuses(["--json", path, "--field", "--only", "one", "--into", str(readme)], "leave out --only")
+            readme.write_text("no marks")
+            self.refuses(["--json", path, "--field", "--into", str(readme)], "<!-- field -->")  # before it measures
         finally:
             sumo_field.FIELD = kept
 
