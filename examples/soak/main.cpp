@@ -267,11 +267,13 @@ int run(Settings& settings) {
   if (take_parameters(settings.parameters)) return 0;
   if (settings.replay) return replay(settings), 0;
   std::optional<examples::PartFile> json;
-  for (auto const& input : {settings.map_file, settings.parameters.path()})
+  auto const sites = sites_of(settings);
+  std::vector<std::string> inputs{settings.parameters.path()};
+  for (auto const& site : sites) inputs.push_back(site.file);
+  for (auto const& input : inputs)
     if (std::error_code none; fs::equivalent(settings.json_file, input, none))
       throw cb::Error("--json " + settings.json_file, "is a file that this run reads", "give the name of another file");
   if (!settings.json_file.empty()) json.emplace(settings.json_file);
-  auto const sites = sites_of(settings);
   auto const runs = settings.runs();
   std::vector<std::vector<Result>> results(sites.size(), std::vector<Result>(runs));
   auto const begin = std::chrono::steady_clock::now();

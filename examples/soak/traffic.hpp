@@ -75,14 +75,13 @@ struct Site {
   };
   for (auto const& lane : map.lanes()) {
     if (!is_sidewalk(lane) || lane.length() < 15.0) continue;
+    auto const on_road = [&](cb::geometry::Point const& p) { return map.on_drivable_lane(p); };
     auto const walk = [&](std::vector<cb::geometry::Point> const& points) {
-      auto const on_road = [&](cb::geometry::Point const& p) { return map.on_drivable_lane(p); };
-      if (points.size() > 2 && std::any_of(points.begin(), points.end(), on_road)) return;  // roads overlap there
       paths.push_back({.way = cb::map::build_free_corridor(map, points, {.width = 1.0}), .per_hour = 60.0});
     };
     std::vector<cb::geometry::Point> along;
     for (double s = 0.0; s < lane.length(); s += 3.0) along.push_back(lane.path.pose(s).position());
-    walk(along);
+    if (std::none_of(along.begin(), along.end(), on_road)) walk(along);
     double const station = lane.station_at(0.5 * lane.length());
     for (auto const& other : map.lanes())
       if (is_sidewalk(other) && other.road == lane.road && other.section == lane.section &&

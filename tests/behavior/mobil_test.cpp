@@ -284,6 +284,7 @@ TEST_CASE("a cyclist who gives up a change at a standstill turns back within its
                  .speed = 0.0,
                  .shape = truck,
                  .behavior = cb::ConstantAcceleration{}});
+      auto const home = world.observe(cyclist).place().corridor;
       cb::Mobil::Memory memory;
       memory.lateral.change = {.target = side > 0.0 ? cb::CorridorId{0} : cb::CorridorId{1},
                                .left = 9.5f,
@@ -291,8 +292,10 @@ TEST_CASE("a cyclist who gives up a change at a standstill turns back within its
       for (int k = 0; k < 100 && world.state(cyclist).x < 130.0; ++k) {
         auto const plan = mobil(6.0).plan(world.observe(cyclist), memory, 0.2);
         REQUIRE(plan.status == cb::PlanStatus::valid);
+        if (k == 0) REQUIRE(memory.lateral.change.target == home);
         world.set_state(cyclist, plan.trajectory.back());
         REQUIRE(collisions(world) == 0);
+        CHECK(std::abs(world.state(cyclist).y + 3.5 + 1.75 * side) < 1.75);
       }
       CHECK(world.state(cyclist).x > 130.0);
     }

@@ -29,7 +29,7 @@ TEST_CASE("the field example measures the wave in a jam, and writes the same row
   for (auto const* const key : {"quantity", "people", "cambium", "sumo", "unit", "source"})
     CHECK(rows[0].contains(key));
   CHECK(rows[0]["cambium"].get<double>() < -15.0);
-  CHECK(rows[0]["cambium"].get<double>() > -21.0);
+  CHECK(rows[0]["cambium"].get<double>() > -22.0);
 }
 
 // Each row has its source, see examples/field. The drivers were tuned with other seeds. A row that people's traffic
@@ -42,14 +42,14 @@ TEST_CASE("traffic stays in people's bands, but for the rows named here") {
   constexpr Miss misses[] = {
       {"speed at 1500 cars an hour", 100, 115},
       {"density at capacity", 22, 31},
-      {"change of that mean from 900 to 2000 cars an hour", 0.0, 0.2},
+      {"change of that mean from 900 to 2000 cars an hour", 0.0, 0.25},
       {"speed in shares of the limit, mean", 0.97, 1.07},
       {"speed of cars without a limit, mean", 110, 125},
-      {"of these above 130 km/h", 0.12, 0.35},
+      {"of these above 130 km/h", 0.15, 0.35},
       {"capacity drop at a lane drop", 0.0, 0.2},
       {"wave of those who start in a jam", -22, -15},
       {"correlation time of that noise", 0.7, 2.0},
-      {"of these below 1 s", 0.03, 0.1},
+      {"of these below 1 s", 0.02, 0.1},
       {"saturation flow of a lane at green", 1730, 1950},
       {"red running on a busy approach, an hour", 0.2, 2.0},
       {"red running on a busy approach, a cycle", 0.005, 0.042},
@@ -64,7 +64,7 @@ TEST_CASE("traffic stays in people's bands, but for the rows named here") {
       {"follow-up headway, through from minor", 3.6, 4.3},
       {"critical gap, right from minor", 5.7, 6.9},
       {"critical gap, left from minor", 6.1, 7.6},
-      {"roundabout entry, 1000 cars an hour in the ring", 270, 557},
+      {"roundabout entry, 1000 cars an hour in the ring", 255, 557},
       {"all-way stop, headway with a queue opposite", 3.6, 5.2},
       {"all-way stop, headway with queues on two other arms", 5.9, 7.5},
       {"all-way stop, headway with queues on all arms", 6.3, 10.6},

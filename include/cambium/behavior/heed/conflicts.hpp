@@ -33,8 +33,8 @@ namespace cambium {
 ///   in time, and for those who go first (`detail::goes_first`) and would be in the zone less than `time_margin` before
 ///   or after it, on a minor road less than `minor_road_margin` more after it. It enters when it waits for nobody and
 ///   there is room behind the section once all before it have closed up to the end of a queue. Behind a merge at which
-///   it goes first, without lights, it needs none: the others would only stand behind it. One whom only those
-///   inside keep out, and who can no longer stop softly before its place, enters and waits before the zone.
+///   it goes first, without lights, it needs none: the others would only stand behind it. If only vehicles inside
+///   keep it out, and it can no longer stop softly before its place, it enters and waits before the zone.
 /// - Inside, it waits only for those who entered before it; of those who entered in the same step, for smaller ids. It
 ///   remembers who these are. It lets those through who will not stop, whoever came first.
 ///
@@ -304,7 +304,7 @@ struct Conflicts {
 
   /// Whether the driver can stop within `distance` [m] without braking harder than `jerk_bound` permits.
   [[nodiscard]] bool stops_softly(Own const& own, double distance) const {
-    constexpr double tolerance = 0.02;  // [m]: of the place where it stands
+    constexpr double tolerance = 0.02;  // [m] beyond where it stops, by rounding
     return own.speed < standing_speed || stopping_distance(own.speed, own.jerk_bound.acceleration, safe_deceleration,
                                                            own.jerk_bound) <= distance + tolerance;
   }
@@ -465,11 +465,11 @@ struct Conflicts {
   [[nodiscard]] Claim claim_until_left(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                                        Other const& other, bool has_entered, double own_way, Own const& own) const {
     auto const& user = other.user;
+    if (!has_entered) return Claim::blocked;
+    if (user.speed < standing_speed) return Claim::wait;
     double end = zone.other_end + other.reach.rear;  // where it leaves room for the own vehicle
     if (conflict.kind == map::OverlapKind::merge)
       end = std::min(end, zone.begin + view.shape().front + own.minimum_gap + user.rear - conflict.shift);
-    if (!has_entered) return Claim::blocked;
-    if (user.speed < standing_speed) return Claim::wait;
     double const gap = std::max(0.0, end - other.at), latest = arrival(own, own_way) - 0.5 * time_margin;
     // Cars pull away faster than lorries.
     double const gains = detail::is_large(view, view.shape(user)) ? detail::pull_away : 1.5 * detail::pull_away;
