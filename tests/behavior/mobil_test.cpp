@@ -301,6 +301,31 @@ TEST_CASE("a cyclist who gives up a change at a standstill turns back within its
     }
 }
 
+TEST_CASE("a slow change into a lane that opens does not swing over the middle of the road") {
+  cb::map::RoadPlan road{.id = "1", .line = cb::map::lay_from({}, {{600.0}})};
+  for (double const begin : {0.0, 150.0, 170.0})
+    road.sections.push_back({begin, cb::map::equal_lanes(1), cb::map::equal_lanes(begin > 0.0 ? 2 : 1)});
+  auto& opening = road.sections[1].right.back();  // within 20 m
+  opening.end_width = opening.width;
+  opening.width = 0.0;
+  auto const map = support::map_of(road);
+  int changed = 0;
+  for (double place = 40.0; place < 140.0; place += 5.0) {
+    CAPTURE(place);
+    auto driver = mobil(32.0);
+    driver.lateral.course.duration = 6.5;
+    Sim world(map);
+    auto const id = world.add({.position = {place, -1.75}, .speed = 30.0, .behavior = driver});
+    world.add({.position = {place + 110.0, -1.75}, .speed = 20.0, .behavior = cb::ConstantAcceleration{}});
+    for (int k = 0; k < 60 && world.record(id).status == cb::AgentStatus::driving; ++k) {
+      REQUIRE(world.step(0.2));
+      CHECK(world.state(id).y < -0.85);  // half of its width
+    }
+    changed += world.state(id).y < -3.5 ? 1 : 0;
+  }
+  CHECK(changed > 5);
+}
+
 TEST_CASE("a vehicle that changes lanes drives evenly past a kink of the road") {
   for (double const turn : {0.1, -0.1})
     for (double const begin : {50.0, 60.0, 70.0, 80.0})

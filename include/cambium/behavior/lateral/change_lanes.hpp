@@ -17,6 +17,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/portable_math.hpp"
+#include "cambium/geometry/angle.hpp"
 
 namespace cambium {
 
@@ -385,7 +386,8 @@ struct ChangeLanes {
     auto const& at = view.place();
     auto const there = view.place(target);
     double const until_end = std::min(
-        {dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, there), until_together(view, there)});
+        {dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, there), until_together(view, there),
+         until_it_swings(view, there)});
     double const beside_object = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
@@ -406,6 +408,20 @@ struct ChangeLanes {
     for (double way = step; 2.0 * way < wanted; way += step)
       if (apart(way) < half) return 2.0 * (way - step);
     return infinite;
+  }
+
+  /// The longest change to the lane of `there` [m] before which the vehicle does not swing out the other way by more
+  /// than half a metre. A lane that opens leads away, so that the course begins with a slope away from it, and a
+  /// quintic course swings by a fifth of its slope times its length. Infinite along lanes that do not part.
+  template <class View>
+  [[nodiscard]] double until_it_swings(View const& view, map::LanePlace const& there) const {
+    constexpr double most = 0.5, share = 0.2;  // [m]
+    auto hint = view.place().segment, hint_there = there.segment;
+    auto const here = view.corridor().center.pose(view.place().s, hint),
+               beside = view.road().corridors[there.corridor].center.pose(there.s, hint_there);
+    double const turn = geometry::angle_difference(beside.heading, here.heading);
+    double const away = there.lateral < 0.0 ? turn : -turn;  // it lies to the left if the vehicle is right of it
+    return away > 0.0 ? most / (share * away) : infinite;
   }
 
   /// Adds a leader in the lane of `place` that the vehicle stays in; before an object it leaves room to change.
