@@ -42,7 +42,7 @@ def read(path):
     except OSError as error:
         raise Error(f"{path}: cannot be read ({error.strerror}): write it with examples/run field --json {path}")
     except ValueError as error:
-        raise Error(f"{path}: is not JSON ({error}): write it with examples/run field --json {path}")
+        raise Error(f"{path}: is not JSON ({error}): name a file that examples/run field --json has written, or a new one")
     rows = said.get("rows") if isinstance(said, dict) else None
     if not isinstance(rows, list) or not all(isinstance(row, dict) and all(key in row for key in KEYS) for row in rows):
         raise Error(f"{path}: has no rows of {', '.join(KEYS)}: write it with examples/run field --json {path}")
@@ -110,7 +110,12 @@ def fill(said, path, settings):
     wanted, why = rows_of(said, path, settings.only), []
     said["sumo_version"], said["sumo_step"] = simulation.version(), settings.step
     with concurrent.futures.ThreadPoolExecutor(settings.threads) as pool:
-        results = list(pool.map(lambda name: measure(name, settings), wanted))
+        try:
+            results = list(pool.map(lambda name: measure(name, settings), wanted))
+        except KeyboardInterrupt:
+            simulation.is_interrupted.set()  # each ends at its next run
+            pool.shutdown(cancel_futures=True)
+            raise
     for (name, rows), values in zip(wanted.items(), results):
         if isinstance(values, str):
             why.append(values)
@@ -189,6 +194,8 @@ def main(words):
         if settings.only:
             raise Error("--into: puts the whole table there: leave out --only")
     if settings.field:
+        if os.path.exists(settings.json):
+            read(settings.json)  # overwrites nothing else
         simulation.version()  # fails at once where SUMO is not installed, not after minutes
         measure_cambium(settings.json, settings)
     said = read(settings.json)
@@ -207,3 +214,5 @@ if __name__ == "__main__":
         main(sys.argv[1:])
     except Error as error:
         sys.exit(f"sumo_field.py: {error}")
+    except KeyboardInterrupt:
+        sys.exit("sumo_field.py: interrupted; no file has changed")

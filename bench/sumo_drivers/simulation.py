@@ -6,6 +6,7 @@ import pathlib
 import shutil
 import statistics
 import subprocess
+import threading
 import xml.etree.ElementTree as xml
 
 
@@ -40,7 +41,12 @@ def version():
     return subprocess.run([program("sumo"), "--version"], capture_output=True, text=True).stdout.split("\n")[0]
 
 
+is_interrupted = threading.Event()  # nothing more is to be run
+
+
 def call(name, *options):
+    if is_interrupted.is_set():
+        raise Error("interrupted")
     done = subprocess.run([program(name), *map(str, options)], capture_output=True, text=True)
     if done.returncode != 0:
         raise Error(f"{name} {' '.join(map(str, options))}\nfailed: {done.stderr.strip()}\nreport this as a bug")

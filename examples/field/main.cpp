@@ -31,14 +31,14 @@ std::string in_words(Row const& row) {
   if (row.low == row.high)
     std::snprintf(text, sizeof text, "%g", row.low);
   else
-    std::snprintf(text, sizeof text, "%g to %g", row.low, row.high);
+    std::snprintf(text, sizeof text, "%.4g to %.4g", row.low, row.high);
   return text;
 }
 
 void print(std::vector<Row> const& rows) {
-  std::printf("\n  %-58s %-14s %-8s %-6s  source\n", "quantity", "people", "cambium", "unit");
+  std::printf("\n  %-62s %-16s %-8s %-6s  source\n", "quantity", "people", "cambium", "unit");
   for (auto const& row : rows)
-    std::printf("%c %-58s %-14s %-8.3g %-6s  %s\n",
+    std::printf("%c %-62s %-16s %-8.4g %-6s  %s\n",
                 row.is_within()        ? ' '
                 : row.is_only_reported ? '.'
                                        : '!',

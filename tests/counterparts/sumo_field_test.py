@@ -116,6 +116,10 @@ class Files(WithFolder):
                 sumo_field.FIELD = [sys.executable, "-c", f"import sys; sys.exit({status})"]
                 with self.assertRaisesRegex(simulation.Error, "failed; what it says stands above"):
                     self.fill([row("a")], experiments, "--field")
+            page = self.folder / "page.md"
+            page.write_text("a page")
+            self.refuses(["--json", str(page), "--field"], "is not JSON")
+            self.assertEqual(page.read_text(), "a page")
             path = self.file(row("a"))
             self.refuses(["--json", path, "--field", "--only", "one", "--into", str(readme)], "leave out --only")
             readme.write_text("no marks")

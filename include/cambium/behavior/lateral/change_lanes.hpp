@@ -385,9 +385,8 @@ struct ChangeLanes {
                                                        CorridorId target) const {
     auto const& at = view.place();
     auto const there = view.place(target);
-    double const until_end = std::min(
-        {dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, there), until_together(view, there),
-         until_it_swings(view, there)});
+    double const until_end = std::min({dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, there),
+                                       until_together(view, there), until_it_swings(view, there)});
     double const beside_object = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
