@@ -45,7 +45,9 @@ def read(path):
         raise Error(f"{path}: is not JSON ({error}): name a file that examples/run field --json has written, or a new one")
     rows = said.get("rows") if isinstance(said, dict) else None
     if not isinstance(rows, list) or not all(isinstance(row, dict) and all(key in row for key in KEYS) for row in rows):
-        raise Error(f"{path}: has no rows of {', '.join(KEYS)}: write it with examples/run field --json {path}")
+        raise Error(
+            f"{path}: has no rows of {', '.join(KEYS)}: name a file that examples/run field --json has written, or a new one"
+        )
     for row in rows:
         band = row["people"] if isinstance(row["people"], list) else [row["people"]] * 2
         if len(band) != 2 or not all(isinstance(number, (int, float)) for number in band):
