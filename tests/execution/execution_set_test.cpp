@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstdint>
 
 #include "../support/allocations.hpp"
 #include "../world/fixtures.hpp"
@@ -68,6 +69,8 @@ TEST_CASE("a frame has no room for the memory of an execution model without one"
     cb::Action action;
     Plain::Behaviors::Memory memory;
     cb::AgentStatus status;
+    std::uint8_t goals_passed;
+    float acceleration;
   };
   CHECK(sizeof(Plain::Record) == sizeof(Before));
 }

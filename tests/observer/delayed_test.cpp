@@ -51,7 +51,7 @@ TEST_CASE("others are seen exactly as they were some steps ago, and the agent it
     CHECK(world.observe(traffic_ego).state() == own_then.agents[2].state);
     auto const view = world.observe(traffic_ego);
     view.around(std::numeric_limits<double>::infinity(), [&](auto const& other) {
-      CHECK(view.acceleration(other) == then.agents[world.slot_of(other.agent)].action.acceleration);
+      CHECK(view.acceleration(other) == double{then.agents[world.slot_of(other.agent)].acceleration});
     });
     auto const front = view.ahead();
     REQUIRE(front);

@@ -69,7 +69,7 @@ TEST_CASE("a recording has objects as rectangles along their longest side, and a
   auto const& state = world.state(late);
   auto const& pose = frames[1].poses[1];
   CHECK(std::array{pose.x, pose.y, pose.heading, pose.speed, pose.acceleration} ==
-        std::array{state.x, state.y, state.heading, state.speed, world.record(late).action.acceleration});
+        std::array{state.x, state.y, state.heading, state.speed, double{world.record(late).acceleration}});
 }
 
 TEST_CASE("a recording has the colours that the world's lights show, and where everybody is") {

@@ -138,7 +138,7 @@ void assume(World& world, Slot slot, Others const& others) {
 /// Whether an agent moves at a constant speed.
 template <class Record>
 [[nodiscard]] bool is_steady(Record const& seen) {
-  return seen.state.speed > 3.0 && std::abs(seen.action.acceleration) < 0.3;  // [m/s], [m/s^2]
+  return seen.state.speed > 3.0 && std::abs(seen.acceleration) < 0.3f;  // [m/s], [m/s^2]
 }
 
 /// Whether an agent moves across its lane, as during a lane change.
@@ -186,7 +186,7 @@ void expect_to_brake_on(World& world, Slot ego, Others others) {
     constexpr double noticeable = 0.5, hardest = 8.0, aligned = 0.5;  // [m/s^2], [rad]
     auto const& agents = world.frame().agents;
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
-      double const seen = agents[slot].action.acceleration;
+      double const seen = static_cast<double>(agents[slot].acceleration);
       if (slot == ego || seen > others.acceleration - noticeable ||
           std::abs(geometry::angle_difference(agents[slot].state.heading, agents[ego].state.heading)) > aligned)
         continue;

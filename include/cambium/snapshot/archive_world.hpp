@@ -217,7 +217,8 @@ template <class Record>
   if (record.status != AgentStatus::driving && record.status != AgentStatus::not_started) return nullptr;
   auto const& lane = record.lane;
   bool is_sound = is_finite(record.state) && std::isfinite(lane.s + lane.lateral + lane.heading_error) &&
-                  std::isfinite(record.action.acceleration + record.action.steering);
+                  std::isfinite(record.action.acceleration + record.action.steering) &&
+                  std::isfinite(record.acceleration);
   if constexpr (requires { record.past.states; }) {
     for (auto const& state : record.past.states) is_sound = is_sound && is_finite(state);
     for (double const acceleration : record.past.accelerations) is_sound = is_sound && std::isfinite(acceleration);

@@ -73,7 +73,7 @@ class WorldRecorder {
                         r.state.y,
                         r.state.heading,
                         r.state.speed,
-                        r.action.acceleration,
+                        static_cast<double>(r.acceleration),
                         r.status == AgentStatus::driving};
     }
     frame.poses.insert(frame.poses.end(), objects_.begin(), objects_.end());

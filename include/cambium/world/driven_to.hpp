@@ -19,6 +19,7 @@ template <class World>
   record.state = state;
   record.action = {};
   if (duration > 0.0) record.action.acceleration = (state.speed - before.state.speed) / duration;
+  record.acceleration = static_cast<float>(record.action.acceleration);
   detail::move_on_lane(world.map(), *agent.road, 0.5 * (before.state.speed + state.speed) * duration, record);
   detail::pass_goals(agent, world.roster().goals[slot], record);
   return record;

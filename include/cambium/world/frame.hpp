@@ -38,10 +38,11 @@ template <MotionState S, class Memory, class ExecutionMemory = NoMemory, class P
 struct AgentRecord {
   S state;
   map::LanePlace lane;
-  Action action;  ///< of the last step
+  Action action;  ///< that its behaviour chose for the last step: the agent's own affair
   Memory memory;
   AgentStatus status = AgentStatus::driving;
   std::uint8_t goals_passed = 0;  ///< number of parts of its `GoalSequence` already reached
+  float acceleration = 0.0f;      ///< that it drove in the last step, by its speeds [m/s^2]: what others see and judge
   [[no_unique_address]] ExecutionMemory execution{};
   [[no_unique_address]] Past past{};
 
@@ -50,14 +51,19 @@ struct AgentRecord {
     using P = AgentRecord;
     return parameter_list(
         parameter("state", &P::state, "where it is, and how fast"),
-        parameter("lane", &P::lane, "its place on its road"), parameter("action", &P::action, "of the last step"),
+        parameter("lane", &P::lane, "its place on its road"),
+        parameter("action", &P::action, "that its behaviour chose"),
         parameter("memory", &P::memory, "what its behaviour remembers"),
         choice("status", &P::status, "driving|not_started|arrived|off_route|left_map|expired|failed",
                "whether it takes part in traffic"),
         parameter("goals_passed", &P::goals_passed, "-", Range{0, 255}, "parts of its goal already reached"),
         parameter("execution", &P::execution, "what its execution model remembers"),
-        parameter("past", &P::past, "for delayed observers"));
+        parameter("past", &P::past, "for delayed observers"),
+        parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "that it drove in the last step"));
   }
+  static constexpr unsigned version = 1;
+  /// Records without an acceleration of their own have that which was planned.
+  void upgrade(unsigned) { acceleration = static_cast<float>(action.acceleration); }
 
   friend bool operator==(AgentRecord const&, AgentRecord const&) = default;
 };

@@ -195,7 +195,7 @@ class ObservedWorld {
   [[nodiscard]] double acceleration(RoadUser const& agent) const {
     auto const slot = slot_of(agent);
     if constexpr (perfect)
-      return record(slot).action.acceleration;
+      return static_cast<double>(record(slot).acceleration);
     else
       return detail::seen_acceleration(*world_, slot_, slot);
   }

@@ -92,14 +92,15 @@ template <class Set, class World>
     auto lane = record.lane;
     if constexpr (!World::Observer::perfect)
       lane = detail::seen_place(world.map(), *agent.road, lane, {state.x, state.y, state.heading}, i != slot);
-    Action action = record.action;
-    action.acceleration = detail::seen_acceleration(world, slot, i);
+    double const acceleration = detail::seen_acceleration(world, slot, i);
+    Action const action = i == slot ? record.action : Action{acceleration, 0.0};
     seen.agents.push_back({state,
                            lane,
                            action,
                            Set::initial_memory(behavior),
                            AgentStatus::driving,
                            i == slot ? record.goals_passed : std::uint8_t{0},
+                           static_cast<float>(acceleration),
                            {},
                            {}});
     if (i == slot) seen.agents.back().execution = record.execution;

@@ -309,6 +309,7 @@ class World {
     }
     record.state = state;
     record.action = {acceleration, 0.0};
+    record.acceleration = static_cast<float>(acceleration);
     record.execution = {};
     if (record.status != AgentStatus::driving) detail::forget_past(record);
     record.status = AgentStatus::driving;

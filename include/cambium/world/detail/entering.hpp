@@ -126,6 +126,7 @@ template <class World>
   if (is_too_large(map, spec.behavior.given(), spec.shape, *road)) refuse_too_large(where);
   check_acceleration(spec.acceleration, where);
   record.action.acceleration = spec.acceleration;
+  record.acceleration = static_cast<float>(spec.acceleration);
   record.lane = place;
   record.state.time = time;
   record.state.x = spec.position.x();

@@ -136,7 +136,7 @@ template <class World>
     auto const back = steps_back(world.roster().agents[own].observer, own == other);
     if (back > 0) return record.past.accelerations[back - 1] + error;
   }
-  return record.action.acceleration + error;
+  return static_cast<double>(record.acceleration) + error;
 }
 
 }  // namespace detail

@@ -89,14 +89,16 @@ class WorldStep {
       return fail(StepProblem::not_finite, agent.id, next);
     if (!(executed.state.speed >= -rounding && executed.state.speed <= fastest)) [[unlikely]]
       return fail(StepProblem::bad_speed, agent.id, next);
-    if constexpr (past_steps_of < Observer >> 0) next.past.push(now.state, now.action.acceleration);
+    if constexpr (past_steps_of < Observer >> 0) next.past.push(now.state, static_cast<double>(now.acceleration));
     next.status = AgentStatus::driving;
     next.state = executed.state;
     next.action = plan.action;
+    double const driven = (executed.state.speed - now.state.speed) / dt_;
+    next.acceleration = static_cast<float>(driven);
     if (now.status != AgentStatus::driving) [[unlikely]]
       forget_past(next);
     else if (plan.action.acceleration == 0.0) [[unlikely]]  // the behaviour may not have said it
-      next.action.acceleration = (executed.state.speed - now.state.speed) / dt_;
+      next.action.acceleration = driven;
   }
 
   /// Finds the new places of the driving agents on their roads. A separate loop, because its short body lets the
@@ -124,6 +126,7 @@ class WorldStep {
   void fail(StepProblem problem, AgentId id, Record& next) {
     next.status = AgentStatus::failed;
     next.action = {};
+    next.acceleration = 0.0f;
     if (result_.failed++ > 0) return;
     result_.problem = problem;
     result_.agent = id;
