@@ -225,6 +225,8 @@ TEST_CASE(
   world.set_state(rear, {.x = 20, .y = -1.75, .speed = 0});
   CHECK_FALSE(at_fault(world, world.slot_of(rear)));
   world.add_object(rectangle(20, -2, 1, 1));
+  CHECK_FALSE(at_fault(world, world.slot_of(rear)));
+  world.set_state(rear, {.x = 20, .y = -1.75, .speed = 0.1});
   CHECK(at_fault(world, world.slot_of(rear)));
 }
 

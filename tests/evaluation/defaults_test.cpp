@@ -12,10 +12,10 @@ using namespace cambium;
 
 TEST_CASE("evaluators, metrics and labels have the documented defaults, units and ranges") {
   CHECK(support::parameter_rows<Collision, AtFaultCollision, SpeedDeviation, LaneChangeUrgency, HardBraking,
-                                OthersBraking, Gap, Closeness, TimeToCollision, RequiredDeceleration,
+                                OthersBraking, Gap, Closeness, TimeToCollision, RequiredDeceleration, Clearance,
                                 Weighted<Progress>, ClosedLoopScore, Constant, SafeDistance, Exceeds<Acceleration>,
                                 DenseTraffic, AtLaneEnd, RightmostLane, LeftmostLane, BeyondPoint, AgentNear,
-                                RelativeSpeed, ZipPartner, SignalAhead, MustGiveWay>() == &R"(
+                                RelativeSpeed, ZipPartner, SignalAhead, MustGiveWay, PassesSignal, Infeasible>() == &R"(
 collision | margin | 0 | m | [0, 100]
 at_fault_collision | blameless_speed | 0.05 | m/s | [0, 10]
 at_fault_collision | look_ahead | 0 | s | [0, 60]
@@ -28,14 +28,31 @@ others_braking | range | 60 | m | [0, inf)
 gap | farthest | 400 | m | [0, 400]
 closeness | minimum_gap | 2 | m | [0.1, 100]
 closeness | time_headway | 0.6 | s | [0, 20]
-time_to_collision | longest | 60 | s | [0, 1e+06]
+time_to_collision | longest | 10 | s | [0, 1000]
+time_to_collision | bearing | 2.6179938779914944 | rad | [0, 3.2]
 required_deceleration | most | 50 | m/s^2 | [0, 1e+06]
+required_deceleration | longest | 10 | s | [0, 1000]
+required_deceleration | bearing | 2.6179938779914944 | rad | [0, 3.2]
+clearance | farthest | 50 | m | [0, 1e+06]
 weighted | weight | 0 | - | (-inf, inf)
 weighted | cost | 0 | - | [0, 1]
 weighted | per_second | false | - | -
 weighted | ends | false | - | -
 closed_loop_score | expected_progress | 0 | m | [0, inf)
+closed_loop_score | least_progress | 0.2 | - | [0, 1]
 closed_loop_score | least_time_to_collision | 0.95 | s | [0, 60]
+closed_loop_score | bearing_in_lane | 0.5235987755982988 | rad | [0, 3.2]
+closed_loop_score | bearing | 2.6179938779914944 | rad | [0, 3.2]
+closed_loop_score | way_against | 2 | m | [0, inf)
+closed_loop_score | long_way_against | 6 | m | [0, inf)
+closed_loop_score | most_excess | 2.23 | m/s | (0, inf)
+closed_loop_score | deceleration | 4.05 | m/s^2 | [0, 100]
+closed_loop_score | acceleration | 2.4 | m/s^2 | [0, 100]
+closed_loop_score | lateral_acceleration | 4.89 | m/s^2 | [0, 100]
+closed_loop_score | jerk | 4.13 | m/s^3 | [0, 100]
+closed_loop_score | size_of_jerk | 8.37 | m/s^3 | [0, 100]
+closed_loop_score | yaw_rate | 0.95 | rad/s | [0, 100]
+closed_loop_score | yaw_acceleration | 1.93 | rad/s^2 | [0, 100]
 constant | value | true | - | -
 safe_distance | side | ahead | - | ahead, behind
 safe_distance | reaction_time | 1 | s | [0, 10]
@@ -58,6 +75,12 @@ signal_ahead | distance | 20 | m | [0, 1000]
 must_give_way | time | 2 | s | [0, 60]
 must_give_way | distance | 20 | m | [0, 400]
 must_give_way | braking | 3 | m/s^2 | [0, 20]
+passes_signal | of | red_light | - | light, red_light, stop_sign
+passes_signal | tolerance | 0.05 | m | [0, 10]
+infeasible | grip | 10 | m/s^2 | [0.1, 100]
+infeasible | place | 0.05 | m | [0, 10]
+infeasible | heading | 0.01 | rad | [0, 1]
+infeasible | speed | 0.05 | m/s | [0, 10]
 )"[1]);
   PostEncroachmentTime const encroachment;
   CHECK(encroachment.longest == 5.0);
@@ -87,6 +110,8 @@ accelerates = exceeds: threshold=0.5
 speed_advantage: G(behind & X(!behind & left U front) -> X(faster U front))
 speed_limit: G !speeding
 speeding = exceeds: threshold=0.1
+solid_line: G !crosses_solid_line
+wrong_way: G !oncoming_lane
 )"[1]);
   CHECK(text_of(zip_merge_rules({500, 3})) == &R"(
 zip_merge: G(zip_partner & precedes & !ego_merged & (precedes | merged) U ego_merged -> G(ego_merged & merged -> !precedes))
@@ -94,10 +119,9 @@ ego_merged = beyond_point: x=500 m, y=3 m
 merged = of_other: label.x=500 m, label.y=3 m
 )"[1]);
   CHECK(text_of(intersection_rules()) == &R"(
-red_light: G(red_ahead -> N light_ahead)
-red_ahead = signal_ahead: of=red_light, distance=20 m
-stop_sign: (stop_ahead -> stop_ahead W (at_line & !moves)) & G(!stop_ahead -> N(stop_ahead -> stop_ahead W (at_line & !moves)))
-stop_ahead = signal_ahead: of=stop_sign, distance=20 m
+red_light: G !passes_red
+stop_sign: !passes_stop W (at_line & !moves) & G(passes_stop -> N(!passes_stop W (at_line & !moves)))
+passes_stop = passes_signal: of=stop_sign, tolerance=0.05 m
 at_line = signal_ahead: of=stop_sign, distance=3 m
 moves = exceeds: threshold=0.1
 give_way: G(must_give_way & !in_conflict -> N !in_conflict)

@@ -8,9 +8,11 @@
 #include <cambium/cambium.hpp>
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "../support/maps.hpp"
@@ -143,14 +145,17 @@ TEST_CASE("post-encroachment time is the time between two vehicles at a crossing
     add(angle, later, AgentId{2});
     auto const one = observed(crossing, AgentId{1}, PostEncroachmentTime{}, 190, 0.05).value();
     auto const other = observed(crossing, AgentId{2}, PostEncroachmentTime{}, 190, 0.05).value();
-    CHECK(one == other);
-    if (expected == infinite)
-      CHECK(one == infinite);
-    else
+    if (expected == infinite) {
+      CHECK(std::isnan(one));
+      CHECK(std::isnan(other));
+    } else {
+      CHECK(one == other);
       CHECK(std::abs(one - expected) < 0.06);
+    }
   }
-  CHECK(observed(following(10.0, 10.0, 10.0, ConstantAcceleration{}), AgentId{2}, PostEncroachmentTime{}, 60).value() ==
-        infinite);
+  auto const after = [](Sim const& world) { return observed(world, AgentId{2}, PostEncroachmentTime{}, 60).value(); };
+  CHECK(std::isnan(after(following(10.0, 10.0, 10.0, ConstantAcceleration{}))));
+  CHECK(after(following(10.0, 5.0, 20.0, ConstantAcceleration{})) == 0.0);  // they touch
 }
 
 TEST_CASE("displacement is the distance from the recording, in its time") {
@@ -228,8 +233,8 @@ TEST_CASE("the closed-loop score punishes each fault by nuPlan's bounds and weig
   CHECK(score_of(calm, 251.0) == 0.0);  // less than a fifth of the way
   CHECK(closing(9.6, 20.0, 10.0) == 1.0);
   CHECK(closing(9.4, 20.0, 10.0) == doctest::Approx(11.0 / 16.0));  // a time to collision below 0.95 s
-  CHECK(closing(0.03, 0.06, 0.0) == doctest::Approx(11.0 / 16.0));
-  CHECK(closing(0.02, 0.04, 0.0) == 1.0);  // it stands
+  CHECK(closing(0.012, 0.006, 0.0) == doctest::Approx(11.0 / 16.0));
+  CHECK(closing(0.012, 0.004, 0.0) == 1.0);  // it stands
 
   Sim off(support::straight_road(1, 300));
   off.add({.position = {100, -3.2}, .speed = 5.0, .behavior = ConstantAcceleration{}, .id = AgentId{2}});
@@ -260,6 +265,9 @@ TEST_CASE("the closed-loop score calls comfortable what is within each of nuPlan
         Case{"jerk", 10, {0, 0.412, 0}, none, true}, Case{"jerk", 10, {0, 0.414, 0.414}, none, false},
         Case{"jerk", 10, {0, -0.414, -0.414}, none, false}, Case{"lateral", 10, none, {0.488, 0.488, 0.488}, true},
         Case{"lateral", 10, none, {0.49, 0.49, 0.49}, false}, Case{"lateral", 10, none, {-0.49, -0.49, -0.49}, false},
+        Case{"jerk of the size", 10, none, {0, 0.083, 0.083}, true},
+        Case{"jerk of the size", 10, none, {0, 0.085, 0.085}, false},
+        Case{"jerk of the size", 10, none, {0, -0.085, -0.085}, false},
         Case{"yaw rate", 2, none, {0.949, 0.949, 0.949}, true},
         Case{"yaw rate", 2, none, {-0.951, -0.951, -0.951}, false},
         Case{"yaw acceleration", 2, none, {0, 0.192, 0}, true},
@@ -269,6 +277,46 @@ TEST_CASE("the closed-loop score calls comfortable what is within each of nuPlan
     CAPTURE(is_comfortable);
     CHECK(score_of(driven(speed, accelerations, yaw_rates), 0.0, 3) ==
           doctest::Approx(is_comfortable ? 1.0 : 14.0 / 16.0));
+  }
+}
+
+TEST_CASE(
+    "the closed-loop score sees crossing traffic where it counts for nuPlan, and no fault where another is to blame") {
+  auto const map = support::own_map("intersection_4way.xodr");
+  // Both are 25 m before the middle of the junction at 10 m/s, one going east, one north, `late` seconds behind.
+  auto const crossing = [&](double late, double seconds) {
+    Sim world(map);
+    double const back = 25.0 + 10.0 * late;
+    for (auto const& [x, y, heading, id] : {std::tuple{-25.0, -1.75, 0.0, 2u}, {1.75, -back, geometry::pi / 2, 1u}}) {
+      State state{0.0, x, y, heading, 10.0}, end = state;
+      end.time = 5.0;
+      end.x += 50.0 * std::cos(heading);
+      end.y += 50.0 * std::sin(heading);
+      world.add({.position = {x, y},
+                 .heading = heading,
+                 .speed = 10.0,
+                 .behavior = StaticTrajectory({state, end}),
+                 .id = AgentId{id}});
+    }
+    return observed(world, AgentId{2}, ClosedLoopScore{}, static_cast<int>(10.0 * seconds)).parts();
+  };
+  // The ego's front is at the other's way after (25 + 1.75 - 0.9 - 3.6) m: the bodies touch from 2.2 s on.
+  CHECK(crossing(0.0, 1.0).keeps_distance == 1.0);  // 1.2 s before, and not yet in the junction
+  CHECK(crossing(0.0, 2.0).keeps_distance == 0.0);  // a moment before the crash
+  CHECK(crossing(0.0, 2.0).no_fault == 1.0);
+  CHECK(crossing(0.0, 2.6).no_fault == 0.0);
+  CHECK(crossing(3.0, 4.0).keeps_distance == 1.0);  // the other one passes behind
+
+  // A neighbour drifts into the ego's side, in its lane or over its border.
+  for (bool const straddles : {false, true}) {
+    Sim world(support::straight_road(3, 500));
+    double const y = straddles ? -4.2 : -5.25;
+    world.add({.position = {100, y}, .speed = 10, .behavior = ConstantAcceleration{}, .id = AgentId{2}});
+    std::vector<State> drifts;
+    for (int i = 0; i <= 40; ++i) drifts.push_back({0.1 * i, 98.0 + i, std::max(y + 1.5, -1.75 - 0.1 * i), 0.0, 10});
+    world.add({.position = {98, -1.75}, .speed = 10, .behavior = StaticTrajectory(drifts), .id = AgentId{1}});
+    auto const parts = observed(world, AgentId{2}, ClosedLoopScore{}, 35).parts();
+    CHECK(parts.no_fault == (straddles ? 0.0 : 1.0));
   }
 }
 

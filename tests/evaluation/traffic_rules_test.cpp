@@ -27,6 +27,7 @@
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/evaluation/rules.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/merging_site.hpp"
@@ -450,6 +451,67 @@ TEST_CASE("signals ahead are lights, red lights and stop signs, up to their line
     CHECK_FALSE(at(21, Of::red_light));
     world.set_light(light, {.cycle = 40, .green_begin = 0, .green_end = 30});
     CHECK_FALSE(at(19, Of::red_light));
+  }
+}
+
+TEST_CASE("a line is passed once, whatever the step and the speed, and at red where the light is red at that moment") {
+  auto const map = support::road_with_signal("1000001");
+  auto const light = map->lights().front().id;
+  map::LightPlan const plan{.cycle = 7, .green_begin = 2, .green_end = 4, .yellow = 1};
+  std::size_t at_red = 0, runs = 0;
+  for (double const step : {0.05, 0.2, 1.0, 3.0})
+    for (double const speed : {3.0, 10.0, 28.0})
+      for (int i = 0; i < 25; ++i) {
+        Sim world(map);
+        world.set_light(light, plan);
+        double const begin = 150.0 + 0.37 * i;
+        auto const slot = world.slot_of(add(world, begin, -1.75, speed));
+        double const line = detail::corridor_of(world, slot).signals.front().line;
+        double const time = (line + PassesSignal{}.tolerance - front - begin) / speed;
+        std::size_t passed = 0, red = 0;
+        while (world.time() < time + 5.0) {
+          REQUIRE(world.step(step));
+          passed += PassesSignal{.of = PassesSignal::Of::light}(world, slot);
+          red += PassesSignal{}(world, slot);
+          CHECK_FALSE(PassesSignal{.of = PassesSignal::Of::stop_sign}(world, slot));
+        }
+        CHECK(passed == 1);
+        bool const is_near_a_change = plan.at(time - 1e-6) != plan.at(time + 1e-6);
+        if (!is_near_a_change) CHECK(red == (plan.at(time) == map::LightColor::red ? 1 : 0));
+        at_red += red;
+        ++runs;
+      }
+  CHECK(at_red > runs / 4);
+  CHECK(at_red < runs);
+}
+
+TEST_CASE("a lane change breaks the rule where the road marks forbid it") {
+  for (auto const& [kind, is_forbidden] :
+       {std::pair{"type='broken' laneChange='both'", false}, {"type='solid' laneChange='none'", true}}) {
+    auto const map = parse_opendrive(
+                         "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' "
+                         "hdg='0' length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
+                         "id='0'/></center><right><lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' "
+                         "d='0'/><roadMark sOffset='0' " +
+                         std::string(kind) +
+                         " weight='standard' color='standard' width='0.12'/></lane><lane id='-2' type='driving'>"
+                         "<width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection></lanes></road>"
+                         "</OpenDRIVE>")
+                         .map;
+    for (double const step : {0.2, 1.0}) {
+      Sim world(map);
+      auto const leftmost = add(world, 100, -1.75, 15, StraightOn{});
+      auto state = world.state(leftmost);
+      state.heading = -0.1;
+      world.set_state(leftmost, state);
+      std::size_t crossed = 0;
+      while (world.time() < 4.0) {
+        REQUIRE(world.step(step));
+        crossed += CrossesSolidLine{}(world, Slot{0});
+      }
+      CHECK(world.state(leftmost).y < -4.0);
+      CHECK(crossed == (is_forbidden ? 1 : 0));
+    }
   }
 }
 
@@ -897,11 +959,11 @@ TEST_CASE(
 TEST_CASE("drivers who know intersections keep their rules on all of our maps") {
   auto rules = intersection_rules();
   auto const kept = rules.size();
-  auto const occurs = [&](std::string const& label, TrafficRule<RuleLabels<>> const& of) {
-    rules.push_back({.name = label, .formula = always(!Formula(label)), .labels = of.labels});
+  auto const occurs = [&](std::string const& name, RuleLabels<> const& label) {
+    rules.push_back({.name = name, .formula = always(!Formula(name)), .labels = {{name, label}}});
   };
-  occurs("red_ahead", rules[0]);
-  occurs("must_give_way", rules[2]);
+  occurs("red_ahead", SignalAhead{.of = SignalAhead::Of::red_light});
+  occurs("must_give_way", MustGiveWay{});
   std::map<std::string, std::size_t> all;
   for (auto const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"}) {
     auto const site = find_junction_site(support::own_map(name));

@@ -14,6 +14,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/portable_math.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/moving_box.hpp"
@@ -114,6 +115,38 @@ template <class World>
   return (other.x - state.x) * along.cos + (other.y - state.y) * along.sin;
 }
 
+/// 150 degrees: who is farther off an agent's heading, seen from its rear axle, is behind it, as in nuPlan's metrics.
+inline constexpr double behind_bearing = 5.0 / 6.0 * geometry::pi;
+
+/// How far off the heading of the agent at `slot` the middle of `other` is, seen from its reference point [rad].
+template <class World>
+[[nodiscard]] double bearing_of(World const& world, Slot slot, geometry::OrientedBox const& other) {
+  auto const& state = world.frame().agents[slot].state;
+  return std::abs(geometry::angle_difference(portable::atan2(other.y - state.y, other.x - state.x), state.heading));
+}
+
+template <class World>
+[[nodiscard]] bool is_behind(World const& world, Slot slot, geometry::OrientedBox const& other) {
+  return bearing_of(world, slot, other) > behind_bearing;
+}
+
+/// Whether the agent's body is between the borders of its lane, at its rear, its reference point and its front; it may
+/// be beyond them by `tolerance` [m].
+template <class World>
+[[nodiscard]] bool within_lane(World const& world, Slot slot, double tolerance = 0.0) {
+  auto const& place = world.frame().agents[slot].lane;
+  auto const& agent = world.roster().agents[slot];
+  auto const& corridor = agent.road->corridors[place.corridor];
+  double const drift = portable::sin_cos(place.heading_error).sin;
+  for (double const along : {-agent.shape.rear, 0.0, agent.shape.front}) {
+    auto const sides = corridor.widths_at(std::clamp(place.s + along, 0.0, corridor.length()));
+    double const lateral = place.lateral + along * drift;
+    if (lateral + agent.shape.left > sides.left + tolerance) return false;
+    if (agent.shape.right - lateral > sides.right + tolerance) return false;
+  }
+  return true;
+}
+
 /// The first static object that a box or a moving box touches, or nothing. O(objects).
 template <class World, class AnyBox>
 [[nodiscard]] StaticObject const* touched_object(World const& world, AnyBox const& box) {
@@ -172,15 +205,26 @@ struct Collision {
   }
 };
 
-/// Whether an agent causes a collision: it touches a static object, or while it moves an agent that is not behind it
-/// (after the at-fault collisions of Dauner et al. 2023). With a `look_ahead`, whether it will, if all keep their
-/// velocities; then only agents count that are ahead of its reference point now. O(agents + objects).
+/// Whether an agent is to blame for what it touches, by the rules of nuPlan (Karnchanachari et al. 2024) and of PDM
+/// (Dauner et al. 2023). The first that fits decides:
+///
+/// | | at fault |
+/// |---|---|
+/// | the agent stands, slower than `blameless_speed` | no |
+/// | the other stands, or is a static object | yes |
+/// | the other's middle is more than 150 degrees off the agent's heading, seen from its rear axle | no |
+/// | the front side of the agent touches the other | yes |
+/// | they touch otherwise | if the agent is not within its lane |
+///
+/// Neither the right of way counts, nor whether there was time to react. With a `look_ahead`, whether it will touch an
+/// object, or an agent that is ahead of its reference point now, if all keep their velocities. O(agents + objects).
 struct AtFaultCollision {
   double blameless_speed = cambium::blameless_speed;
   double look_ahead = 0.0;
 
   static constexpr char const* name = "at_fault_collision";
-  static constexpr char const* summary = "touches an object, or while it moves an agent that is not behind it";
+  static constexpr char const* summary = "is to blame for what it touches, by the rules of nuPlan";
+  static constexpr char const* source = "Karnchanachari et al. 2024; Dauner et al. 2023";
   static constexpr auto parameters() {
     using P = AtFaultCollision;
     return parameter_list(
@@ -207,18 +251,32 @@ struct AtFaultCollision {
 
  private:
   template <class World>
+  [[nodiscard]] bool stands(World const& world, Slot slot) const {
+    return world.frame().agents[slot].state.speed <= blameless_speed;
+  }
+
+  template <class World>
   [[nodiscard]] bool hits_object(World const& world, Slot slot) const {
-    if (world.roster().objects.empty()) return false;
+    if (world.roster().objects.empty() || stands(world, slot)) return false;
     return detail::touched_object(world, detail::box_after(world, slot, look_ahead)) != nullptr;
   }
 
   template <class World>
   [[nodiscard]] bool hits(World const& world, Slot slot, Slot other) const {
-    if (world.frame().agents[slot].state.speed < blameless_speed || !in_traffic(world, other)) return false;
-    double const behind = look_ahead > 0.0 ? 0.0 : -world.roster().agents[slot].shape.rear;
-    return detail::distance_ahead(world, slot, box_at(world, other)) > behind &&
-           geometry::intersects(detail::box_after(world, slot, look_ahead),
-                                detail::box_after(world, other, look_ahead));
+    if (stands(world, slot) || !in_traffic(world, other)) return false;
+    auto const own = box_at(world, slot), its = box_at(world, other);
+    if (look_ahead > 0.0)
+      return detail::distance_ahead(world, slot, its) > 0.0 &&
+             geometry::intersects(detail::box_after(world, slot, look_ahead),
+                                  detail::box_after(world, other, look_ahead));
+    if (!geometry::intersects(own, its)) return false;
+    if (stands(world, other)) return true;
+    if (detail::is_behind(world, slot, its)) return false;
+    auto front = own;
+    front.x += own.half_length * own.cos;
+    front.y += own.half_length * own.sin;
+    front.half_length = 0.0;
+    return geometry::intersects(front, its) || !detail::within_lane(world, slot);
   }
 };
 

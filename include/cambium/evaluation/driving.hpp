@@ -146,7 +146,7 @@ struct LaneChangeUrgency {
   }
 };
 
-/// The agent's acceleration over the last step, along its heading [m/s^2].
+/// The agent's acceleration over the last step, along its heading [m/s^2]: that it drove, whatever it had planned.
 struct Acceleration {
   static constexpr char const* name = "acceleration";
   static constexpr char const* summary = "over the last step [m/s^2]";
@@ -154,7 +154,7 @@ struct Acceleration {
 
   template <class World>
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
-    return world.frame().agents[slot].action.acceleration;
+    return static_cast<double>(world.frame().agents[slot].acceleration);
   }
 };
 
@@ -171,7 +171,7 @@ struct HardBraking {
 
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
-    return world.frame().agents[slot].action.acceleration < -deceleration;
+    return Acceleration{}(world, slot) < -deceleration;
   }
 };
 
@@ -195,7 +195,7 @@ struct OthersBraking {
     auto const& own = agents[slot].state;
     double sum = 0.0;
     for (Slot i{}; index_of(i) < agents.size(); ++i) {
-      double const excess = -agents[i].action.acceleration - comfortable;
+      double const excess = -static_cast<double>(agents[i].acceleration) - comfortable;
       if (excess <= 0.0 || i == slot || agents[i].status != AgentStatus::driving) continue;
       double const dx = agents[i].state.x - own.x, dy = agents[i].state.y - own.y;
       if (dx * dx + dy * dy <= range * range) sum += excess * excess;
@@ -227,7 +227,7 @@ struct LateralAcceleration {
 };
 
 /// The change of the agent's acceleration since the previous step [m/s^3]. Needs a world that keeps a history; 0
-/// without one.
+/// without one, and in the first step of a world, before which nobody drove.
 struct Jerk {
   static constexpr bool needs_history = true;
   static constexpr char const* name = "jerk";
@@ -236,10 +236,10 @@ struct Jerk {
 
   template <class World>
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
-    if (world.history_size() == 0) return 0.0;
+    if (world.history_size() == 0 || world.history(1).step == 0) return 0.0;
     auto const &now = world.frame().agents[slot], &before = world.history(1).agents[slot];
     double const dt = now.state.time - before.state.time;
-    return dt > 0.0 ? (now.action.acceleration - before.action.acceleration) / dt : 0.0;
+    return dt > 0.0 ? (Acceleration{}(world, slot) - static_cast<double>(before.acceleration)) / dt : 0.0;
   }
 };
 
@@ -278,48 +278,6 @@ struct Closeness {
   [[nodiscard]] double operator()(World& world, Slot slot) const {
     double const wanted = minimum_gap + time_headway * std::max(0.0, world.frame().agents[slot].state.speed);
     return std::clamp(1.0 - Gap{wanted}(world, slot) / wanted, 0.0, 1.0);
-  }
-};
-
-/// Time until the agent hits the next road user ahead along its lane corridor if both keep their speeds, at most
-/// `longest` [s].
-struct TimeToCollision {
-  double longest = 60.0;
-
-  static constexpr char const* name = "time_to_collision";
-  static constexpr char const* summary = "to the next road user ahead, at constant speeds [s]";
-  static constexpr auto parameters() {
-    return parameter_list(parameter("longest", &TimeToCollision::longest, "s", Range{0, 1e6},
-                                    "time where the two do not close in, or meet later"));
-  }
-
-  template <class World>
-  [[nodiscard]] double operator()(World& world, Slot slot) const {
-    auto const next = world.truth(slot).ahead();
-    double const closing = next ? world.frame().agents[slot].state.speed - next->speed : 0.0;
-    return closing > 0.0 ? std::clamp(next->gap / closing, 0.0, longest) : longest;
-  }
-};
-
-/// Deceleration at which the agent would just not hit the next road user ahead along its lane corridor, if that one
-/// keeps its speed, at most `most` [m/s^2]; 0 where the two do not close in (DRAC: Almqvist, Hyden, Risser 1991).
-struct RequiredDeceleration {
-  double most = 50.0;
-
-  static constexpr char const* name = "required_deceleration";
-  static constexpr char const* summary = "to not hit the next road user ahead, which keeps its speed [m/s^2]";
-  static constexpr char const* source = "Almqvist, Hyden, Risser 1991";
-  static constexpr auto parameters() {
-    return parameter_list(parameter("most", &RequiredDeceleration::most, "m/s^2", Range{0, 1e6},
-                                    "where more is required, or the two touch"));
-  }
-
-  template <class World>
-  [[nodiscard]] double operator()(World& world, Slot slot) const {
-    auto const next = world.truth(slot).ahead();
-    double const closing = next ? world.frame().agents[slot].state.speed - next->speed : 0.0;
-    if (!(closing > 0.0)) return 0.0;
-    return next->gap > 0.0 ? std::min(most, 0.5 * closing * closing / next->gap) : most;
   }
 };
 

@@ -8,6 +8,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/portable_math.hpp"
+#include "cambium/evaluation/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
@@ -102,6 +103,23 @@ struct OffRoad {
     auto const at_end = corridor.center.pose(is_before ? inside : corridor.length() - inside);
     auto const along = portable::sin_cos(at_end.heading);
     return !map.on_drivable_lane({at_end.x - foot.lateral * along.sin, at_end.y + foot.lateral * along.cos});
+  }
+};
+
+/// Whether a part of the body of an agent in traffic is beyond the borders of its lane. O(1).
+struct Straddles {
+  double tolerance = 0.1;
+
+  static constexpr char const* name = "straddles";
+  static constexpr char const* summary = "a part of it is beyond the borders of its lane";
+  static constexpr auto parameters() {
+    return parameter_list(
+        parameter("tolerance", &Straddles::tolerance, "m", Range{0, 10}, "that a part may be beyond a border"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    return in_traffic(world, slot) && !detail::within_lane(world, slot, tolerance);
   }
 };
 

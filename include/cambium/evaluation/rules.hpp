@@ -3,6 +3,7 @@
 #include "cambium/evaluation/rules/agent_labels.hpp"
 #include "cambium/evaluation/rules/formula.hpp"
 #include "cambium/evaluation/rules/formula_automaton.hpp"
+#include "cambium/evaluation/rules/imposed_braking.hpp"
 #include "cambium/evaluation/rules/junction_labels.hpp"
 #include "cambium/evaluation/rules/label.hpp"
 #include "cambium/evaluation/rules/pair_labels.hpp"

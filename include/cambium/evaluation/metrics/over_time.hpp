@@ -28,6 +28,7 @@ enum class Fold : std::uint8_t {
   mean,      ///< over time; 0 without any
   integral,  ///< value times seconds
   times,     ///< how often the value turned from zero to another
+  longest,   ///< the longest time for which the value was not zero [s]
 };
 
 /// The values of an evaluator over a run, summed up. Frames in which the agent is not driving do not count.
@@ -49,6 +50,8 @@ struct Over {
       so_far_ = std::max(so_far_, value);
     else if constexpr (fold == Fold::times)
       so_far_ += value != 0.0 && last_ == 0.0 ? 1.0 : 0.0;
+    else if constexpr (fold == Fold::longest)
+      so_far_ = std::max(so_far_, lasts_ = value != 0.0 ? lasts_ + dt : 0.0);
     else
       so_far_ += value * dt;
     last_ = value;
@@ -64,7 +67,7 @@ struct Over {
   double so_far_ = fold == Fold::least  ? std::numeric_limits<double>::infinity()
                    : fold == Fold::most ? -std::numeric_limits<double>::infinity()
                                         : 0.0;
-  double last_ = 0.0, duration_ = 0.0;
+  double last_ = 0.0, duration_ = 0.0, lasts_ = 0.0;
 };
 
 /// Least value of `E` so far.
@@ -82,5 +85,8 @@ using Integral = Over<E, Fold::integral>;
 /// How often `E` became true.
 template <class E>
 using Times = Over<E, Fold::times>;
+/// The longest time for which `E` was true [s].
+template <class E>
+using LongestTime = Over<E, Fold::longest>;
 
 }  // namespace cambium

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <deque>
@@ -16,10 +17,10 @@
 namespace cambium {
 
 /// Post-encroachment time [s]: the least time between one of two road users leaving a place and the other one reaching
-/// it, where their ways cross or meet (Allen, Shin, Cooper 1978). Places are those that bodies cover at the steps, so
-/// it is exact to one step. Vehicles that follow each other in one direction (less than `crossing_angle` apart) do not
-/// count, nor what happened more than `longest` [s] ago. Infinite without an encounter. O(agents near the trail * steps
-/// in `longest`) per step.
+/// it, where their ways cross or meet (Allen, Shin, Cooper 1978). Places are those that bodies cover at the steps: the
+/// grid of its times is that of the steps. Vehicles that follow each other in one direction (less than `crossing_angle`
+/// apart) do not count, nor what happened more than `longest` [s] ago. 0 where the two touch; NaN without an encounter.
+/// O(agents * steps in `longest`) per step.
 class PostEncroachmentTime {
  public:
   double longest = 5.0;         ///< [s]
@@ -42,15 +43,16 @@ class PostEncroachmentTime {
     for (Slot other{}; index_of(other) < world.size(); ++other) {
       if (other == slot || !in_traffic(world, other)) continue;
       auto const its = footprint(world, other);
-      constexpr double far = 60.0;  // [m]: farther than a trail that matters
-      if (std::abs(its.box.x - own.box.x) > far || std::abs(its.box.y - own.box.y) > far) continue;
       meet(its, trail_);
+      if (is_there) meet(its, std::array{own});
       if (is_there) others_.push_back(its);
     }
     if (is_there) trail_.push_back(own);
   }
 
-  [[nodiscard]] double value() const { return least_; }
+  [[nodiscard]] double value() const {
+    return std::isfinite(least_) ? least_ : std::numeric_limits<double>::quiet_NaN();
+  }
 
  private:
   struct Footprint {
@@ -70,8 +72,9 @@ class PostEncroachmentTime {
   void meet(Footprint const& now, Earlier const& earlier) {
     for (auto const& before : earlier) {
       double const since = now.time - before.time;
-      if (since >= least_ || portable::cos(now.heading - before.heading) > portable::cos(crossing_angle)) continue;
-      if (geometry::intersects(now.box, before.box)) least_ = since;
+      if (since >= least_ || !geometry::intersects(now.box, before.box)) continue;
+      bool const crosses = portable::cos(now.heading - before.heading) <= portable::cos(crossing_angle);
+      if (crosses || since == 0.0) least_ = since;
     }
   }
 

@@ -48,6 +48,30 @@ struct ChangesLane {
   }
 };
 
+/// Whether an agent's reference point passed into a neighbouring lane in the last step, where the road marks do not
+/// permit it. False where no step led here, see `World::before_step`. O(1).
+struct CrossesSolidLine {
+  static constexpr char const* name = "crosses_solid_line";
+  static constexpr char const* summary = "passed into a neighbouring lane where the road marks forbid it";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    auto const* const before = world.before_step();
+    auto const& now = world.frame().agents[slot];
+    if (before == nullptr || now.status != AgentStatus::driving) return false;
+    auto const& then = (*before)[slot];
+    if (then.status != AgentStatus::driving || then.lane.corridor == now.lane.corridor) return false;
+    auto const& piece = detail::road_of(world, slot).corridors[then.lane.corridor].pieces[then.lane.piece];
+    if (!is_valid(piece.lane)) return false;
+    auto const& lane = world.map().lane(piece.lane);
+    double const s = then.lane.s + piece.lane_offset;
+    bool const leftwards = piece.left == now.lane.corridor;
+    if (!leftwards && piece.right != now.lane.corridor) return false;
+    return leftwards ? !lane.may_change_left(s) : !lane.may_change_right(s);
+  }
+};
+
 /// Whether at least `agents` others are within `radius` of an agent, reference point to reference point. O(agents).
 struct DenseTraffic {
   double radius = 20.0;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
@@ -12,6 +13,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/world/frame.hpp"
 
 // Labels about junctions: signs, lights, and the right of way.
 
@@ -50,6 +52,62 @@ struct SignalAhead {
 
 namespace detail {
 
+/// The way that the agent at `slot` made along its lane corridor in the last step, as it is numbered now [m]; nothing
+/// where no step led here, or where the agent was not in traffic. O(1), after a lane change O(segments).
+template <class World>
+[[nodiscard]] std::optional<double> last_way(World const& world, Slot slot) {
+  auto const* const before = world.before_step();
+  auto const& now = world.frame().agents[slot];
+  if (before == nullptr || (*before)[slot].status != AgentStatus::driving || now.status != AgentStatus::driving)
+    return std::nullopt;
+  auto const& then = (*before)[slot];
+  if (then.lane.corridor == now.lane.corridor) return now.lane.s - then.lane.s;
+  auto const& center = corridor_of(world, slot).center;
+  return now.lane.s - center.project({then.state.x, then.state.y}, now.lane.segment).s;
+}
+
+}  // namespace detail
+
+/// Whether an agent's front end passed the line of a signal in the last step: of a traffic light, of one that was red
+/// when it passed, or of a stop sign. However long the step is, no line is missed. A front end may be over a line by
+/// `tolerance`. False where no step led here, see `World::before_step`. O(signals of its lane corridor).
+struct PassesSignal {
+  using Of = SignalAhead::Of;
+
+  Of of = Of::red_light;
+  double tolerance = 0.05;
+
+  static constexpr char const* name = "passes_signal";
+  static constexpr char const* summary = "passed the line of a light, a red light or a stop sign in the last step";
+  static constexpr auto parameters() {
+    using P = PassesSignal;
+    return parameter_list(choice("of", &P::of, "light|red_light|stop_sign", "the signal"),
+                          parameter("tolerance", &P::tolerance, "m", Range{0, 10}, "a front end may be over the line"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    auto const way = detail::last_way(world, slot);
+    if (!way || !(*way > 0.0)) return false;
+    auto const& record = world.frame().agents[slot];
+    double const front = record.lane.s + world.roster().agents[slot].shape.front - tolerance, began = front - *way;
+    double const time = (*world.before_step())[slot].state.time, dt = record.state.time - time;
+    auto const kind = of == Of::stop_sign ? map::SignalKind::stop : map::SignalKind::light;
+    auto const& lights = world.roster().lights;
+    for (auto const& signal : detail::corridor_of(world, slot).signals) {
+      if (signal.line >= front) return false;
+      if (signal.kind != kind || signal.line < began) continue;
+      if (of != Of::red_light) return true;
+      if (index_of(signal.light) < lights.size() &&
+          lights[index_of(signal.light)].at(time + dt * (signal.line - began) / *way) == map::LightColor::red)
+        return true;
+    }
+    return false;
+  }
+};
+
+namespace detail {
+
 /// A conflict of an agent's corridor in which another agent is on its way: where it is on that way, and the zone for
 /// the sizes of the two.
 struct MutualConflict {
@@ -59,10 +117,11 @@ struct MutualConflict {
 };
 
 /// Whether `f(MutualConflict)` is true for one of the conflicts whose zones begin at most `ahead` [m] ahead
-/// of the agent and do not end behind it, in which `other` is on its way by its route. O(conflicts there * stretches of
-/// their ways).
+/// of the agent and end at most `behind` [m] behind it, in which `other` is on its way by its route. O(conflicts there
+/// * stretches of their ways).
 template <class World, class F>
-[[nodiscard]] bool any_mutual_conflict(World const& world, Slot slot, Slot other, double ahead, F const& f) {
+[[nodiscard]] bool any_mutual_conflict(World const& world, Slot slot, Slot other, double ahead, double behind,
+                                       F const& f) {
   auto const& conflicts = corridor_of(world, slot).conflicts;
   if (conflicts.empty()) return false;
   auto const is_large = [&](Slot one) {
@@ -70,12 +129,12 @@ template <class World, class F>
   };
   double const s = world.frame().agents[slot].lane.s, index = world.frame().agents[other].lane.index;
   for (auto const& conflict : conflicts) {
-    if (conflict.farthest_end < s) continue;
-    if (conflict.hull().end < s || conflict.hull().begin > s + ahead) continue;
+    if (conflict.farthest_end < s - behind) continue;
+    if (conflict.hull().end < s - behind || conflict.hull().begin > s + ahead) continue;
     for (auto const& way : conflict.ways) {
       if (index < way.index_begin || index > way.index_end) continue;
       auto const& zone = conflict.zones[is_large(slot)][is_large(other)];
-      if (zone.empty() || zone.end < s || zone.begin > s + ahead ||
+      if (zone.empty() || zone.end < s - behind || zone.begin > s + ahead ||
           road_of(world, other).corridor_of(conflict.other) == none<CorridorId>)
         break;
       if (f(MutualConflict{conflict, zone, way.begin + index - way.index_begin})) return true;
@@ -109,7 +168,7 @@ struct MustGiveWay {
 
   template <class World>
   [[nodiscard]] bool operator()(World& world, Slot slot, Slot other) const {
-    return detail::any_mutual_conflict(world, slot, other, distance, [&](detail::MutualConflict const& mutual) {
+    return detail::any_mutual_conflict(world, slot, other, distance, 0.0, [&](detail::MutualConflict const& mutual) {
       auto const& [conflict, zone, at] = mutual;
       if (conflict.right_of_way != map::RightOfWay::yields || at >= zone.other_begin) return false;
       bool const is_past_line = at + world.roster().agents[other].shape.front > zone.other_line;
@@ -124,22 +183,24 @@ struct MustGiveWay {
   /// How far a vehicle gets within `time` [m].
   template <class Record>
   [[nodiscard]] double way_of(Record const& record) const {
-    double const speed = record.state.speed, brakes = std::clamp(-record.action.acceleration, 0.0, braking);
+    double const speed = record.state.speed,
+                 brakes = std::clamp(-static_cast<double>(record.acceleration), 0.0, braking);
     double const moves = brakes * time > speed ? speed / brakes : time;  // until it stands
     return speed * moves - 0.5 * brakes * moves * moves;
   }
 };
 
-/// Whether the agent is where the other, on its way, would touch it. O(conflicts near).
+/// Whether the agent is where the other, on its way, would touch it, or was there in the last step. O(conflicts near).
 struct InConflict {
   static constexpr char const* name = "in_conflict";
-  static constexpr char const* summary = "is where the other, on its way, would touch it";
+  static constexpr char const* summary = "is, or was in the last step, where the other, on its way, would touch it";
   static constexpr char const* source = "after Maierhofer, Moosbrugger, Althoff 2022";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
   [[nodiscard]] bool operator()(World& world, Slot slot, Slot other) const {
-    return detail::any_mutual_conflict(world, slot, other, 0.0, [&](detail::MutualConflict const& mutual) {
+    double const way = std::max(0.0, detail::last_way(world, slot).value_or(0.0));
+    return detail::any_mutual_conflict(world, slot, other, 0.0, way, [&](detail::MutualConflict const& mutual) {
       return mutual.at <= mutual.zone.other_end;
     });
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/constants.hpp"
@@ -25,8 +26,35 @@ using RuleLabels =
     OneOf<Constant, Collision, OffRoad, Exceeds<Acceleration>, Exceeds<Progress>, Exceeds<SpeedLimitExcess>,
           SafeDistance, ChangesLane, DenseTraffic, AtLaneEnd, RightmostLane, LeftmostLane, BeyondPoint, ZipPartner,
           SignalAhead, AgentNear, RelativeSpeed, LeftOf, RightOf, FrontOf, BehindOf, PrecedingAgent, SucceedingAgent,
-          MustGiveWay, InConflict, OfOther<OffRoad>, OfOther<Exceeds<SpeedLimitExcess>>, OfOther<AtLaneEnd>,
-          OfOther<RightmostLane>, OfOther<BeyondPoint>, Own...>;
+          MustGiveWay, InConflict, PassesSignal, CrossesSolidLine, OncomingLane, OfOther<OffRoad>,
+          OfOther<Exceeds<SpeedLimitExcess>>, OfOther<AtLaneEnd>, OfOther<RightmostLane>, OfOther<BeyondPoint>, Own...>;
+
+/// Rules for every road.
+///
+/// | rule | formula |
+/// |---|---|
+/// | `speed_limit` | `G !speeding` |
+/// | `solid_line` | `G !crosses_solid_line` |
+/// | `wrong_way` | `G !oncoming_lane` |
+template <class Labels = RuleLabels<>>
+[[nodiscard]] std::vector<TrafficRule<Labels>> road_rules() {
+  constexpr double tolerance = 0.1;  // [m/s]
+  return {{.name = "speed_limit",
+           .summary = "drives no faster than its lane permits",
+           .source = "StVO section 3; Maierhofer et al. 2020, G3",
+           .formula = "G !speeding",
+           .labels = {{"speeding", Exceeds<SpeedLimitExcess>{.threshold = tolerance}}}},
+          {.name = "solid_line",
+           .summary = "does not change lanes where the road marks forbid it",
+           .source = "StVO sign 295",
+           .formula = "G !crosses_solid_line",
+           .labels = {CrossesSolidLine{}}},
+          {.name = "wrong_way",
+           .summary = "does not drive in lanes of oncoming traffic",
+           .source = "StVO section 2 (2)",
+           .formula = "G !oncoming_lane",
+           .labels = {OncomingLane{}}}};
+}
 
 /// Rules for motorways and other carriageways of one direction. Sources: Esterle, Gressenbuch, Knoll 2020, "Formalizing
 /// Traffic Rules for Machine Interpretability" (arXiv 2007.00330), as BARK's evaluators have them; Rizaldi et al. 2017;
@@ -39,7 +67,7 @@ using RuleLabels =
 /// | `no_passing_on_the_right` | `G(!dense & behind -> !X(behind U right U front))` |
 /// | `being_overtaken` | `G(right & near -> !accelerates)` |
 /// | `speed_advantage` | `G(behind & X(!behind & (left U front)) -> X(faster U front))` |
-/// | `speed_limit` | `G !speeding` |
+/// | those of `road_rules` | |
 ///
 /// The published rule of speed advantage demands it from the first step behind the other on, even where the agent
 /// follows it for a while; here, from the step on at which it draws level. Left out: keeping right, where courts
@@ -48,8 +76,8 @@ using RuleLabels =
 /// agent such that".
 template <class Labels = RuleLabels<>>
 [[nodiscard]] std::vector<TrafficRule<Labels>> highway_rules() {
-  constexpr double level = 3.0, pushes = 0.5, tolerance = 0.1;  // [m], [m/s^2], [m/s]
-  return {
+  constexpr double level = 3.0, pushes = 0.5;  // [m], [m/s^2]
+  std::vector<TrafficRule<Labels>> rules{
       {.name = "safe_distance",
        .summary = "keeps a distance from which it can stop behind the vehicle ahead",
        .source = "StVO section 4 (1); Rizaldi et al. 2017, theorem 4; Esterle et al. 2020; Maierhofer et al. 2020, G1",
@@ -77,12 +105,9 @@ template <class Labels = RuleLabels<>>
        .source = "StVO section 5 (2); Esterle et al. 2020, corrected",
        .formula = "G(behind & X(!behind & (left U front)) -> X(faster U front))",
        .labels = {{"behind", BehindOf{}}, {"left", LeftOf{}}, {"front", FrontOf{}}, {"faster", RelativeSpeed{}}}},
-      {.name = "speed_limit",
-       .summary = "drives no faster than its lane permits",
-       .source = "StVO section 3; Maierhofer et al. 2020, G3",
-       .formula = "G !speeding",
-       .labels = {{"speeding", Exceeds<SpeedLimitExcess>{.threshold = tolerance}}}},
   };
+  for (auto& rule : road_rules<Labels>()) rules.push_back(std::move(rule));
+  return rules;
 }
 
 /// The zip merge: where a lane ends, the vehicle that is close ahead in the lane beside goes in between an agent and
@@ -117,8 +142,8 @@ template <class Labels = RuleLabels<>>
 ///
 /// | rule | formula |
 /// |---|---|
-/// | `red_light` | `G(red_ahead -> N light_ahead)`: a line ahead at red is not passed in the next step |
-/// | `stop_sign` | `stops & G(!stop_ahead -> N stops)` with `stops` = `stop_ahead -> stop_ahead W (at_line & !moves)` |
+/// | `red_light` | `G !passes_red` |
+/// | `stop_sign` | `stops & G(passes_stop -> N stops)` with `stops` = `!passes_stop W (at_line & !moves)` |
 /// | `give_way` | `G(must_give_way & !in_conflict -> N !in_conflict)` |
 ///
 /// The published rules of the right of way ask whether a vehicle that has it must brake; here, whether it would be
@@ -129,18 +154,18 @@ template <class Labels = RuleLabels<>>
 [[nodiscard]] std::vector<TrafficRule<Labels>> intersection_rules() {
   using Of = SignalAhead::Of;
   constexpr double line = 3.0;  // [m]
-  Formula const stops("stop_ahead -> stop_ahead W (at_line & !moves)");
+  Formula const stops("!passes_stop W (at_line & !moves)");
   return {
       {.name = "red_light",
        .summary = "does not pass a red light",
        .source = "StVO section 37; Maierhofer et al. 2022",
-       .formula = "G(red_ahead -> N light_ahead)",
-       .labels = {{"red_ahead", SignalAhead{.of = Of::red_light}}, {"light_ahead", SignalAhead{.of = Of::light}}}},
+       .formula = "G !passes_red",
+       .labels = {{"passes_red", PassesSignal{.of = Of::red_light}}}},
       {.name = "stop_sign",
        .summary = "stands still at the line of a stop sign before it passes it",
        .source = "StVO sign 206; Maierhofer et al. 2022",
-       .formula = stops && always(implies("!stop_ahead", weak_next(stops))),
-       .labels = {{"stop_ahead", SignalAhead{.of = Of::stop_sign}},
+       .formula = stops && always(implies("passes_stop", weak_next(stops))),
+       .labels = {{"passes_stop", PassesSignal{.of = Of::stop_sign}},
                   {"at_line", SignalAhead{.of = Of::stop_sign, .distance = line}},
                   {"moves", Exceeds<Progress>{.threshold = standing_speed}}}},
       {.name = "give_way",

@@ -1,0 +1,235 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/geometry/polygon.hpp"
+#include "cambium/geometry/shape.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
+#include "cambium/world/frame.hpp"
+
+// How near an agent is to all other road users and static objects: where these are, and where they will be.
+
+namespace cambium {
+
+namespace detail {
+
+/// The area that an agent will cover if it keeps its speed and its lane: it follows the centre line of its lane
+/// corridor at its distance from it. One that moves across its lane goes on to the middle of the lane that it moves
+/// towards, ever more slowly. Beyond the ends of its corridor it goes straight on.
+class PredictedArea {
+ public:
+  template <class World>
+  PredictedArea(World const& world, Slot slot)
+      : corridor_(&world.roster().agents[slot].road->corridors[world.frame().agents[slot].lane.corridor]),
+        shape_(&world.roster().agents[slot].shape),
+        place_(world.frame().agents[slot].lane),
+        speed_(std::max(0.0, world.frame().agents[slot].state.speed)) {
+    auto const direction = portable::sin_cos(place_.heading_error);
+    along_ = speed_ * direction.cos;
+    across_ = speed_ * direction.sin;
+    auto const sides = corridor_->widths_at(place_.s, place_.segment);
+    bool const returns = across_ * place_.lateral < 0.0;
+    double const to_go = returns ? std::abs(place_.lateral) : sides.left + sides.right;
+    constexpr double slow = 1e-3, quickest = 2.0;  // [m/s], [1/s]
+    if (std::abs(across_) > slow) rate_ = std::min(quickest, std::abs(across_) / std::max(slow, to_go));
+    turn_ = speed_ * corridor_->sharpest_bend + std::abs(place_.heading_error) * rate_;
+  }
+
+  /// After `time` [s], in which it brakes by `braking` [m/s^2] until it stands.
+  [[nodiscard]] geometry::OrientedBox box(double time, double braking) {
+    // A vehicle that brakes is where it would be earlier.
+    double const moves = braking * time > speed_ ? speed_ / braking : time;
+    double const then = speed_ > 0.0 ? moves - 0.5 * braking * moves * moves / speed_ : 0.0;
+    double const s = place_.s + along_ * then;
+    double const decay = rate_ > 0.0 ? portable::exp(-rate_ * then) : 1.0;
+    double const lateral = place_.lateral + (rate_ > 0.0 ? across_ / rate_ * (1.0 - decay) : across_ * then);
+    auto const center = corridor_->center.pose(s, place_.segment);
+    auto const along = portable::sin_cos(center.heading);
+    auto const heads = portable::sin_cos(center.heading + place_.heading_error * decay);
+    speed_now_ = std::max(0.0, speed_ - braking * time);
+    return geometry::box_of(*shape_, center.x - lateral * along.sin, center.y + lateral * along.cos, heads.cos,
+                            heads.sin);
+  }
+
+  /// Its speed when `box` was asked last [m/s].
+  [[nodiscard]] double speed_now() const { return speed_now_; }
+  /// Bound on how fast it turns [rad/s].
+  [[nodiscard]] double turn() const { return turn_; }
+  /// Bound on the distance of its corners from its reference point [m].
+  [[nodiscard]] double reach() const {
+    return std::max(shape_->front, shape_->rear) + std::max(shape_->left, shape_->right);
+  }
+  [[nodiscard]] double speed() const { return speed_; }
+
+ private:
+  map::LaneCorridor const* corridor_;
+  geometry::Shape const* shape_;
+  map::LanePlace place_;
+  double speed_, along_ = 0.0, across_ = 0.0;
+  double rate_ = 0.0;  ///< by which its motion across dies away [1/s]
+  double turn_ = 0.0, speed_now_ = 0.0;
+};
+
+/// When a gap closes first [s]; `longest` if it does not by then. `look(time)` returns the gap [m], and a bound on how
+/// fast it closes within half a second [m/s]. Advances by steps in which it cannot close (conservative advancement;
+/// Mirtich 1996), so that it misses nothing, to 1 cm.
+template <class Look>
+[[nodiscard]] double first_contact(double longest, Look const& look) {
+  constexpr double touching = 0.01, shortest_step = 1e-3, longest_step = 0.5;  // [m], [s]
+  for (double time = 0.0; time < longest;) {
+    auto const [gap, closing] = look(time);
+    if (gap <= touching) return time;
+    time += closing * longest_step <= gap ? longest_step : std::max(shortest_step, gap / closing);
+  }
+  return longest;
+}
+
+/// When an agent touches another one, or a static object, if it brakes by `braking` [m/s^2]; `longest` if it does not
+/// by then [s]. O(steps): a few where the two approach, 2 a second where they stay apart.
+[[nodiscard]] inline double time_of_contact(PredictedArea& own, PredictedArea& other, double longest, double braking) {
+  double const bends = own.turn() * own.reach() + other.turn() * other.reach() +
+                       0.5 * (own.speed() * own.turn() + other.speed() * other.turn() + braking);
+  return first_contact(longest, [&](double time) {
+    auto const a = own.box(time, braking), b = other.box(time, 0.0);
+    double const x = own.speed_now() * a.cos - other.speed_now() * b.cos;
+    double const y = own.speed_now() * a.sin - other.speed_now() * b.sin;
+    return std::pair(geometry::separation(a, b), portable::hypot(x, y) + bends);
+  });
+}
+[[nodiscard]] inline double time_of_contact(PredictedArea& own, geometry::Polygon const& object, double longest,
+                                            double braking) {
+  return first_contact(longest, [&](double time) {
+    auto const gap = geometry::distance(own.box(time, braking), object);
+    return std::pair(gap, own.speed_now() + own.turn() * own.reach());
+  });
+}
+
+/// Calls `f(area)` for all that an agent may meet: the predicted areas of other road users that may reach it within
+/// `longest` [s] and are at most `bearing` [rad] off its heading, and the outlines of static objects.
+template <class World, class F>
+void for_each_met(World const& world, Slot slot, PredictedArea const& own, double longest, double bearing, F const& f) {
+  auto const& state = world.frame().agents[slot].state;
+  for (Slot other{}; index_of(other) < world.size(); ++other) {
+    if (other == slot || !in_traffic(world, other)) continue;
+    PredictedArea its(world, other);
+    auto const box = box_at(world, other);
+    double const dx = box.x - state.x, dy = box.y - state.y;
+    double const reach = own.reach() + 2.0 * its.reach() + (own.speed() + its.speed()) * longest;
+    if (dx * dx + dy * dy > reach * reach) continue;
+    if (bearing_of(world, slot, box) > bearing) continue;
+    f(its);
+  }
+  for (auto const& object : world.roster().objects) f(object.outline);
+}
+
+}  // namespace detail
+
+/// Distance from the agent's body to the nearest other one or static object, at most `farthest` [m]; 0 where they
+/// touch. O(agents + objects).
+struct Clearance {
+  double farthest = 50.0;
+
+  static constexpr char const* name = "clearance";
+  static constexpr char const* summary = "distance to the nearest road user or object [m]";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("farthest", &Clearance::farthest, "m", Range{0, 1e6}, "where nobody is nearer"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    if (!in_traffic(world, slot)) return farthest;
+    auto const own = box_at(world, slot);
+    double nearest = farthest;
+    for (Slot other{}; index_of(other) < world.size(); ++other) {
+      if (other == slot || !in_traffic(world, other)) continue;
+      auto const box = box_at(world, other);
+      if (geometry::separation(own, box) < nearest) nearest = std::min(nearest, geometry::distance(own, box));
+    }
+    for (auto const& object : world.roster().objects)
+      nearest = std::min(nearest, geometry::distance(own, object.outline));
+    return nearest;
+  }
+};
+
+/// Time until the agent touches another road user or a static object if all keep their speeds and their lanes, at most
+/// `longest` [s] (Hayward 1972, in two dimensions); 0 where they touch. Those behind it do not count. Exact to 1 cm of
+/// way, on no grid of times. O(agents + objects), as `detail::time_of_contact`.
+struct TimeToCollision {
+  double longest = 10.0;
+  double bearing = detail::behind_bearing;
+
+  static constexpr char const* name = "time_to_collision";
+  static constexpr char const* summary = "to any road user or object ahead, at constant speeds along the lanes [s]";
+  static constexpr char const* source = "Hayward 1972";
+  static constexpr auto parameters() {
+    using P = TimeToCollision;
+    return parameter_list(parameter("longest", &P::longest, "s", Range{0, 1000}, "where it meets nobody, or later"),
+                          parameter("bearing", &P::bearing, "rad", Range{0, 3.2}, "who is farther off does not count"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    if (!in_traffic(world, slot)) return longest;
+    detail::PredictedArea own(world, slot);
+    double least = longest;
+    detail::for_each_met(world, slot, own, longest, bearing, [&](auto& other) {
+      least = std::min(least, detail::time_of_contact(own, other, least, 0.0));
+    });
+    return least;
+  }
+};
+
+/// Least constant deceleration at which the agent touches nobody within `longest` [s] if all others keep their speeds
+/// and all keep their lanes, at most `most` [m/s^2]; 0 where it touches nobody anyway. For a leader it is that of
+/// Almqvist, Hyden, Risser 1991 (DRAC). Those behind it do not count. To 0.1 % of `most`. O(agents + objects).
+struct RequiredDeceleration {
+  double most = 50.0;
+  double longest = 10.0;
+  double bearing = detail::behind_bearing;
+
+  static constexpr char const* name = "required_deceleration";
+  static constexpr char const* summary = "to touch nobody, where others keep their speeds and lanes [m/s^2]";
+  static constexpr char const* source = "Almqvist, Hyden, Risser 1991";
+  static constexpr auto parameters() {
+    using P = RequiredDeceleration;
+    return parameter_list(
+        parameter("most", &P::most, "m/s^2", Range{0, 1e6}, "where more is required, or the two touch"),
+        parameter("longest", &P::longest, "s", Range{0, 1000}, "later contacts do not count"),
+        parameter("bearing", &P::bearing, "rad", Range{0, 3.2}, "who is farther off does not count"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    if (!in_traffic(world, slot)) return 0.0;
+    detail::PredictedArea own(world, slot);
+    double required = 0.0;
+    detail::for_each_met(world, slot, own, longest, bearing, [&](auto& other) {
+      auto const meets = [&](double braking) {
+        return detail::time_of_contact(own, other, longest, braking) < longest;
+      };
+      if (required >= most || !meets(required)) return;
+      double high = most;
+      if (meets(high)) {
+        required = most;
+        return;
+      }
+      while (high - required > 1e-3 * most) {
+        double const middle = 0.5 * (required + high);
+        (meets(middle) ? required : high) = middle;
+      }
+      required = high;
+    });
+    return required;
+  }
+};
+
+}  // namespace cambium

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cambium/behavior/view.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/rules/junction_labels.hpp"
+#include "cambium/evaluation/rules/relative_place.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/lanes/signals.hpp"
+#include "cambium/world/frame.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// Whether there is anything within `distance` [m] ahead of an agent's front end that may make a driver brake from
+/// `speed` [m/s]: a road user, an object, a signal that is not green, a conflict, the end of its lane or its way, a
+/// lower speed limit, or a bend. O(conflicts + signals + bends there).
+template <class World>
+[[nodiscard]] bool has_reason_to_brake(World& world, Slot slot, double distance, double speed) {
+  auto const next = world.truth(slot).ahead();
+  if (next && next->gap < distance) return true;
+  auto const& corridor = corridor_of(world, slot);
+  double const s = world.frame().agents[slot].lane.s, front = s + world.roster().agents[slot].shape.front;
+  double const end = front + distance;
+  for (auto const& signal : corridor.signals) {
+    bool const is_near = signal.line >= front && signal.line < end;
+    if (is_near &&
+        (signal.kind != map::SignalKind::light || world.truth(slot).light(signal.light) != map::LightColor::green))
+      return true;
+  }
+  for (auto const& conflict : corridor.conflicts)
+    if (conflict.hull().end > s && conflict.hull().begin < end) return true;
+  for (auto const& bend : corridor.bends)
+    if (bend.end > s && bend.begin < end && bend.curvature * speed * speed > 1.0) return true;  // [m/s^2]
+  return std::min(piece_of(world, slot).lane_end, corridor.length()) < end ||
+         std::min(corridor.speed_limit_at(s), corridor.speed_limit_at(end)) < speed;
+}
+
+}  // namespace detail
+
+/// How hard others had to brake because of an agent, beyond what the rules ask of them: the hardest braking [m/s^2] of
+/// another road user
+/// - that has the right of way over the agent, in a conflict in which the agent is;
+/// - right behind the agent, which has changed into its lane in the last `memory` [s];
+/// - right behind the agent, which brakes harder than `hard` although nothing ahead asks for that.
+/// 0 if none braked harder than `comfortable`. O(agents + conflicts near) per step.
+struct ImposedBraking {
+  double comfortable = 2.0;
+  double hard = 4.0;
+  double memory = 5.0;
+
+  static constexpr char const* name = "imposed_braking";
+  static constexpr char const* summary = "how hard others had to brake because of it [m/s^2]";
+  static constexpr auto parameters() {
+    using P = ImposedBraking;
+    return parameter_list(
+        parameter("comfortable", &P::comfortable, "m/s^2", Range{0, 50}, "others' braking that does not count"),
+        parameter("hard", &P::hard, "m/s^2", Range{0, 50}, "own braking that needs a reason"),
+        parameter("memory", &P::memory, "s", Range{0, 1000}, "time in which a lane change counts"));
+  }
+
+  template <class World>
+  void observe(World& world, Slot slot, double dt) {
+    auto const& record = world.frame().agents[slot];
+    auto const* const before = world.before_step();
+    if (before == nullptr || record.status != AgentStatus::driving) return;
+    auto const& then = (*before)[slot];
+    if (then.status == AgentStatus::driving && then.lane.corridor != record.lane.corridor) changed_ = world.time();
+    bool const has_cut_in = world.time() - changed_ <= memory;
+    for (Slot other{}; index_of(other) < world.size(); ++other) {
+      double const braking = -static_cast<double>(world.frame().agents[other].acceleration);
+      if (other == slot || !in_traffic(world, other) || braking <= std::max(comfortable, hardest_)) continue;
+      if (takes_right_of_way(world, slot, other) ||
+          (follows(world, other, slot) && (has_cut_in || brakes_for_nothing(world, slot, dt))))
+        hardest_ = braking;
+    }
+  }
+
+  [[nodiscard]] double value() const { return hardest_; }
+
+ private:
+  template <class World>
+  [[nodiscard]] static bool takes_right_of_way(World& world, Slot slot, Slot other) {
+    return detail::any_mutual_conflict(world, slot, other, 0.0, 0.0, [](detail::MutualConflict const& mutual) {
+      return mutual.conflict.right_of_way == map::RightOfWay::yields && mutual.at < mutual.zone.other_end;
+    });
+  }
+
+  template <class World>
+  [[nodiscard]] static bool follows(World& world, Slot other, Slot slot) {
+    auto const next = world.truth(other).ahead();
+    return next && is_valid(next->agent) && next->slot == slot;
+  }
+
+  /// Whether the agent braked hard in the last step though nothing was in the way in which it could stop comfortably.
+  template <class World>
+  [[nodiscard]] bool brakes_for_nothing(World& world, Slot slot, double dt) const {
+    auto const& record = world.frame().agents[slot];
+    double const braking = -static_cast<double>(record.acceleration), speed = record.state.speed + braking * dt;
+    constexpr double spare = 10.0;  // [m]
+    return braking > hard &&
+           !detail::has_reason_to_brake(world, slot, spare + 0.5 * speed * speed / std::max(0.1, comfortable), speed);
+  }
+
+  double hardest_ = 0.0;
+  double changed_ = -std::numeric_limits<double>::infinity();  ///< when it changed lanes last [s]
+};
+
+}  // namespace cambium
