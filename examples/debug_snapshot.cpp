@@ -144,10 +144,12 @@ void print_test(std::string const& file, std::string const& map_file, std::strin
       cb::detail::json_string(file).c_str(), call.c_str(), map.c_str(), static_cast<unsigned long long>(result));
 }
 
-/// How the ego comes out of a cycle.
-void print_ego(std::string const& what, cb::StepResult const& result, examples::ThawedAgent const& ego) {
-  std::printf("%s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", what.c_str(), to_string(result.problem),
-              ego.id.c_str(), ego.x, ego.y, ego.speed, ego.acceleration);
+/// How the ego comes out of a cycle. `because`: why it was kept, where it came out as recorded.
+void print_ego(std::string const& what, cb::StepResult const& result, std::string const& because,
+               examples::ThawedAgent const& ego) {
+  std::string const outcome = !result ? to_string(result.problem) : because.empty() ? "the step succeeded" : because;
+  std::printf("%s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", what.c_str(), outcome.c_str(), ego.id.c_str(),
+              ego.x, ego.y, ego.speed, ego.acceleration);
 }
 
 /// Says whether the cycle came out as recorded.
@@ -165,10 +167,11 @@ void print_verdict(cb::SnapshotInfo const& info, bool is_equal) {
 }
 
 /// Runs the cycle as it was recorded, beside the edited one.
-void print_unedited(examples::Thawed& as_recorded, examples::Thawed const& edited, bool is_equal) {
+void print_unedited(examples::Thawed& as_recorded, examples::Thawed const& edited, cb::SnapshotInfo const& info,
+                    bool is_equal) {
   try {
     auto const result = as_recorded.run();
-    print_ego("without the edit", result, as_recorded.ego());
+    print_ego("without the edit", result, info.note, as_recorded.ego());
   } catch (std::exception const& error) {
     std::printf("without the edit it threw an exception: %s\n", error.what());
     return;
@@ -248,12 +251,12 @@ int debug(Settings const& settings) {
     return 1;
   }
 
-  print_ego("\n" + cycle, result, thawed->ego());
   bool const is_equal = info.result && thawed->hash() == *info.result;
+  print_ego("\n" + cycle, result, is_equal ? info.note : "", thawed->ego());
   if (settings.edits.empty())
     print_verdict(info, is_equal);
   else
-    print_unedited(*types.thaw(map, bytes, settings.file), *thawed, is_equal);
+    print_unedited(*types.thaw(map, bytes, settings.file), *thawed, info, is_equal);
   go_on(*thawed, settings);
   if (!settings.replay.empty()) {
     if (!info.note.empty()) thawed->recording().notes.push_back(info.note);
@@ -273,8 +276,11 @@ int debug(Settings const& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App program("Restores a snapshot and runs its cycle again. Exit code 0: bit-equal, 1: not, 2: a bad file.",
-                   "debug_snapshot");
+  CLI::App program(
+      "Restores a snapshot and runs its cycle again. Exit code: 0 if it came out bit-equal to what was recorded, 1 if "
+      "not (as "
+      "after --edit, or where it throws), 2 for a bad file or option.",
+      "debug_snapshot");
   program.add_option("FILE", settings.file, "a snapshot of record_snapshots, or of a failure in the benchmark")
       ->required();
   program.add_option("--map", settings.map, "its map, if that is not where it was (OpenDRIVE)")

@@ -12,13 +12,8 @@
 #include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/actions/driver_actions.hpp"
 #include "cambium/behavior/actions/idm_proposal.hpp"
-#include "cambium/behavior/pedestrian/pedestrian.hpp"
+#include "cambium/benchmark/benchmark_traffic.hpp"
 #include "cambium/benchmark/contender.hpp"
-#include "cambium/dynamics/single_track.hpp"
-#include "cambium/execution/interpolate.hpp"
-#include "cambium/observer/observer_set.hpp"
-#include "cambium/observer/occluded.hpp"
-#include "cambium/observer/perfect.hpp"
 #include "cambium/planner/frenet/frenet_planner.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/planner/policy/policy_tree_planner.hpp"
@@ -33,11 +28,7 @@ namespace benchmark {
 
 namespace cb = cambium;
 
-/// The drivers that scenario files may name, and how these see.
-using Traffic =
-    cb::World<cb::BehaviorSet<cb::IdmClassic, cb::Mobil, cb::UrbanDriver, cb::ConstantAcceleration, cb::Pedestrian>,
-              cb::InterpolateExecution, cb::SingleTrack, cb::ObserverSet<cb::PerfectObserver, cb::OccludedObserver>>;
-
+using Traffic = cb::BenchmarkTraffic;
 using Spec = Traffic::AgentSpec;
 
 /// What planners predict with.
@@ -76,17 +67,19 @@ using Contender = cb::Contender<Traffic>;
 [[nodiscard]] Contender driver(std::string name, std::string parameters, std::uint64_t hash,
                                std::function<Tested(Spec const&)> choose);
 
-/// A driver whose parameters are `planner` with what the file says of `name`, but for the ego's desired speed:
-/// `set_speed(planner, speed)`.
+/// A driver whose parameters are `planner` with what the file says of `name`. Where the file gives no desired speed, it
+/// has that of the scenario's ego: `set_speed(planner, speed)`.
 template <class Planner, class SetSpeed>
 [[nodiscard]] Contender with_speed(examples::ParameterFile& file, Planner planner, std::string const& name,
                                    SetSpeed set_speed) {
   file.take(planner, name);
-  return driver(name, cb::to_string(planner), cb::hash_parameters(planner), [planner, set_speed](Spec const& ego) {
-    auto own = planner;
-    set_speed(own, desired_speed(ego));
-    return Tested(own);
-  });
+  bool const is_given = file.gives(name, "desired_speed");
+  return driver(name, cb::to_string(planner), cb::hash_parameters(planner),
+                [planner, set_speed, is_given](Spec const& ego) {
+                  auto own = planner;
+                  if (!is_given) set_speed(own, desired_speed(ego));
+                  return Tested(own);
+                });
 }
 
 // The shipped behaviours; each planner in a source file of its own, because planners take long to compile.

@@ -45,6 +45,14 @@ void keep_common(JsonValue& value, JsonValue const& other) {
   });
 }
 
+/// Whether a key like this is in a document, at any depth.
+bool has_key(JsonValue const& value, std::string const& key) {
+  auto const* const members = value.members();
+  return members != nullptr && std::ranges::any_of(*members, [&](JsonValue::Member const& member) {
+           return member.first == key || has_key(member.second, key);
+         });
+}
+
 }  // namespace
 
 struct ParameterFile::Content {
@@ -56,7 +64,8 @@ struct ParameterFile::Content {
 void ParameterFile::add_options(CLI::App& program) {
   program
       .add_option("--parameters", path_,
-                  "JSON file of parameters, such as {\"idm\": {\"desired_speed\": 12}}; --print-parameters shows one")
+                  "JSON file of parameters, such as {\"idm\": {\"law\": {\"desired_speed\": 12}}}; --print-parameters "
+                  "shows one")
       ->type_name("FILE")
       ->check(not_empty());
   program.add_flag("--print-parameters", prints_,
@@ -84,6 +93,10 @@ bool ParameterFile::has(std::string const& name) const {
   if (!content_ || std::find(content_->known.begin(), content_->known.end(), name) == content_->known.end())
     throw std::logic_error("parameters " + name + ": declare them by allow() or take() first");
   return find(content_->said, name) != nullptr;
+}
+
+bool ParameterFile::gives(std::string const& name, std::string const& key) const {
+  return has(name) && has_key(*find(content_->said, name), key);
 }
 
 void ParameterFile::read(std::string const& name, cambium::TypeInfo const& type, void* object) const {

@@ -215,6 +215,7 @@ TEST_CASE("comparisons use equal scenarios only, and say what they left out") {
   CHECK_THROWS_AS(static_cast<void>(compare_with_baseline({a}, "driver")), Error);
   auto elsewhere = a;
   elsewhere.set_hash = 5;
+  elsewhere.set = "highway";
   CHECK_THROWS_AS(static_cast<void>(compare_against({a}, {elsewhere}, "old.db", "new.db")), Error);
   CHECK_THROWS_AS(static_cast<void>(compare_against({a}, {other}, "old.db", "new.db")), Error);
 
@@ -223,6 +224,38 @@ TEST_CASE("comparisons use equal scenarios only, and say what they left out") {
   tuned.parameters_hash = 9;
   auto const same = compare_against({tuned, a}, {tuned}, "old.db", "new.db");
   CHECK_FALSE(change_of(same.list.front(), "closed_loop_score").differs);
+}
+
+TEST_CASE("verdicts that another judge changed are found with their reasons, also where it hashes sets otherwise") {
+  auto const old = group_of("frenet", 40, [](RunResult& result, std::int64_t) { result.success = true; });
+  auto judged = old;
+  judged.set_hash = 77;
+  for (std::size_t i = 3; i < 30; ++i) {
+    judged.rows[i].result.success = false;
+    judged.rows[i].result.red_light = true;
+    judged.rows[i].result.violations = "3.4 s red_light; 5 s wrong_way until 7.2 s";
+  }
+  judged.rows[3].result.collision = judged.rows[3].result.at_fault = true;
+  auto const found = compare_against({old}, {judged}, "old.db", "new.db");
+  REQUIRE(found.list.size() == 1);
+  CHECK(found.missing.empty());
+  CHECK(found.list.front().set == "merging (by title and seeds; the hashes differ)");
+  CHECK(change_of(found.list.front(), "red_light").verdict == Finding::worse);
+  CHECK(change_of(found.list.front(), "violations").after == doctest::Approx(27.0 / 40));
+  auto report = make_report({judged});
+  report.comparisons.push_back(found);
+  auto const tables = tables_of(report);
+  CHECK(tables.back().note.find("Success lost in scenarios 3 (collision, at fault), 4 (red_light at 3.4 s), 5") !=
+        std::string::npos);
+  auto const outcomes = text_of(tables[2]);
+  CHECK(outcomes.find("merging: violations") != outcomes.npos);
+  CHECK(outcomes.find("red light [%]") != outcomes.npos);
+  auto const summary = text_of(summary_of({judged}).front());
+  CHECK(summary.find("red light") != summary.npos);
+  CHECK(summary.find("solid line") == summary.npos);  // there was none
+  auto moved = judged;
+  for (auto& row : moved.rows) row.seed += 1;
+  CHECK_THROWS_AS(static_cast<void>(compare_against({old}, {moved}, "old.db", "new.db")), Error);
 }
 
 TEST_CASE("progress is told with a rate and what is left, and plots have round numbers along their axes") {
@@ -277,6 +310,9 @@ TEST_CASE("the page lists all runs, filters them, and links the replays and snap
                                result.success = i > 2;
                                result.collision = i < 2;
                                result.error = i == 2 ? "<b>no plan" : "";
+                               result.steps = 50;
+                               result.duration_s = 10.0;
+                               if (i == 4) result.violations = "3.4 s red_light; 5 s wrong_way until 7.2 s";
                              })});
   TemporaryFolder const folder;
   std::filesystem::create_directories(folder.path() / "replays");
@@ -304,18 +340,24 @@ say('problem', rows()[9].cells[3].title === '<b>no plan',
 target.value = 'no plan';
 target.oninput();
 say('text', rows().length);
+target.value = 'red light';
+target.oninput();
+say('violations', rows().length, ...[...rows()[0].querySelectorAll('.violation')].map((a) => a.textContent));
 )js"));
   auto const document = browser::document(*chromium, file);
   auto const said = [&](std::string const& name) { return browser::attribute(document, "<body", "data-" + name); };
   CHECK(said("failure") == "");
   CHECK(said("shown") == "100 160");
-  CHECK(said("links") == "replays/merging_idm_00000001_4.html replays/merging_idm_00000001_4.snapshot");
+  CHECK(said("links") ==
+        "replays/merging_idm_00000001_4.html replays/merging_idm_00000001_4.snapshot "
+        "replays/merging_idm_00000001_4.html#frame=17 replays/merging_idm_00000001_4.html#frame=25");
   CHECK(said("idm") == "10");
   CHECK(said("sorted") == "success error 2");
   CHECK(said("command").find("examples/run benchmark --set 'my sets/merging.json' --only merging:2:idm --replay ") ==
         0);
   CHECK(said("problem") == "true true");
   CHECK(said("text") == "1");
+  CHECK(said("violations") == "1 3.4 s red light 5 s wrong way until 7.2 s");
 }
 
 TEST_CASE("the program reports, merges, and exits 1 on a significant loss") {

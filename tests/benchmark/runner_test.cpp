@@ -208,7 +208,8 @@ TEST_CASE("a result is what an own loop finds") {
     auto const slot = world.slot_of(scenario.ego);
     double speeds = 0.0, hardest = 0.0, least_gap = std::numeric_limits<double>::infinity();
     auto const look = [&] {
-      if (auto const ahead = world.observe(slot).ahead()) least_gap = std::min(least_gap, ahead->gap);
+      if (auto const ahead = world.observe(slot).ahead({.merging = Merging::ignored}))
+        least_gap = std::min(least_gap, ahead->gap);
     };
     look();
     while (!world.reached_goal(slot) && !Collision{}(world, slot) && world.time() < 59.9) {
@@ -465,8 +466,10 @@ TEST_CASE("agents see what their observers let them see, and a lonely ego has no
   std::erase_if(scenario.agents, [&](auto const& spec) { return *spec.id != scenario.ego; });
   auto const alone = idm.run(scenario, {}, false).result;
   CHECK(alone.success);
-  CHECK(std::isinf(alone.least_gap));
-  CHECK(std::isinf(alone.least_time_to_collision));
+  CHECK(std::isnan(alone.least_gap));
+  CHECK(std::isnan(alone.least_time_to_collision));
+  CHECK(std::isnan(alone.least_clearance));
+  CHECK(std::isnan(alone.post_encroachment_time));
 }
 
 TEST_CASE("a store that cannot be read says so, and merges all of another or nothing") {

@@ -90,13 +90,18 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
       for (auto& word : words) argv.push_back(word.data());
       argv.push_back(nullptr);
       if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(1);
+      if (std::freopen(folder.file("said").c_str(), "w", stderr) == nullptr) _exit(1);
       execv(argv[0], argv.data());
       _exit(1);
     }
     for (int tries = 0; tries < 10'000 && rows_in(folder.file("killed.db")) < wanted; ++tries)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    kill(child, SIGKILL);
-    waitpid(child, nullptr, 0);
+    bool const by_hand = wanted == 100;
+    kill(child, by_hand ? SIGINT : SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    CHECK(WIFSIGNALED(status));
+    if (by_hand) CHECK(has(content_of(folder.file("said")), "interrupted: the same command goes on where it was"));
     auto const found = rows_in(folder.file("killed.db"));
     CHECK(found >= wanted);
     CHECK(found >= kept);
@@ -172,6 +177,31 @@ TEST_CASE("failed runs leave replays that the report links, and a command that r
   auto const with = content_of(folder.file("with.html"));
   CHECK(has(with, "\"source\":\"--set examples/exit --scenarios 1 --plan-limit 60\""));
   CHECK(has(with, "\"command\":\"examples/run benchmark --parameters '" + folder.file("its parameters.json") + "'\""));
+}
+
+TEST_CASE("a file of parameters says how fast a planner likes to drive; without one, the scenario does") {
+  Program const program("benchmark");
+  browser::TemporaryFolder const folder;
+  auto const time_with = [&](std::string const& parameters) {
+    cambium::write_file(folder.file("p.json"), parameters);
+    program.output({"--set", "merging", "--behaviors", "idm", "--scenarios", "1", "--db", folder.file("p.db"),
+                    "--parameters", folder.file("p.json"), "--json", folder.file("r.json")});
+    return double(nlohmann::json::parse(content_of(folder.file("r.json")))[0]["mean_time_s"]);
+  };
+  double const usual = time_with(R"({"idm": {"law": {"minimum_gap": 2.5}}})");
+  CHECK(time_with(R"({"idm": {"law": {"desired_speed": 8}}})") > 1.3 * usual);
+}
+
+TEST_CASE("a folder of sets is run as a whole, wherever it is") {
+  Program const program("benchmark");
+  browser::TemporaryFolder const folder;
+  program.refuses({"--set", folder.path().string()}, "has no scenario files (.json)");
+  for (char const* name : {"merging.json", "exit.json"})
+    fs::copy(CAMBIUM_SOURCE_DIR "/examples/benchmark/sets/examples/" + std::string(name), folder.path());
+  program.refuses({"--set", folder.path().string()}, ".xodr");  // their maps are not there
+  CHECK(
+      has(program.output({"--set", "examples", "--behaviors", "idm", "--scenarios", "1", "--db", folder.file("r.db")}),
+          "8 runs"));
 }
 
 TEST_CASE("the benchmark names the fault in its options") {

@@ -47,7 +47,8 @@ TEST_CASE("the defect of the case study is found by its snapshot, as the README 
   CHECK(mended.code == 1);
   CHECK(has(mended.out, "-3.121 m/s^2"));
   CHECK(has(mended.out, "edited:\n  agent 0: smooth_follower, with these parameters, else defaults: {\"mended\": 1}"));
-  CHECK(has(mended.out, "without the edit: no problem; agent 0 at (31.053, -5.250), 8.266 m/s, -2.721 m/s^2"));
+  CHECK(has(mended.out,
+            "without the edit: a jerk of 1.68889 m/s^3; agent 0 at (31.053, -5.250), 8.266 m/s, -2.721 m/s^2"));
   auto const faster = debug.run({"--edit", "behavior.desired_speed=12", files[0]});
   CHECK(faster.code == 1);
   CHECK(has(faster.out, "\"desired_speed\": 12"));

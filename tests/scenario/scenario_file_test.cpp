@@ -261,6 +261,25 @@ TEST_CASE("flows of a file draw dense traffic by lane, the same each time") {
         "f.json: recipes[0]: draws no vehicle, or none for the ego; give longer or denser flows, or slower ones");
 }
 
+TEST_CASE("a set has the same hash in every program that can read it, and says what makes a run no success") {
+  using Large = World<BehaviorSet<Pedestrian, Mobil, UrbanDriver, IdmClassic>, InterpolateExecution, SingleTrack,
+                      ObserverSet<PerfectObserver, OccludedObserver>>;
+  std::string const recipes = R"("recipes": [{"map_file": "highway.xodr", "scenarios": 3, "flows": [
+    {"from": "1/0/-1", "traffic": {"end": 300}, "ego": "middle",
+     "drivers": [{"share": 3, "behavior": {"mobil": {"law": {"desired_speed": 25}}}}, {"share": 1, "behavior": "idm_classic"}]}]}]})";
+  auto const hash = parse_scenarios<Small>("{" + recipes, maps).hash();
+  CHECK(parse_scenarios<Large>("{" + recipes, maps).hash() == hash);
+  CHECK(parse_scenarios<Small>(R"({"time_step": 0.1, )" + recipes, maps).hash() != hash);
+
+  auto const chosen = parse_scenarios<Small>(R"({"fails": ["off_road", "red_light"], )" + recipes, maps);
+  CHECK(chosen.fails == std::vector{Criterion::off_road, Criterion::red_light});
+  CHECK(chosen.hash() != hash);
+  CHECK(parse_scenarios<Small>(R"({"fails": [], )" + recipes, maps).fails.empty());
+  CHECK(parse_scenarios<Small>(to_json_text(chosen), maps).fails == chosen.fails);
+  CHECK(refusal(R"({"fails": ["read_light"], )" + recipes) ==
+        "f.json: scenario_set.fails[0]: is \"read_light\"; is it red_light?");
+}
+
 TEST_CASE("a recipe of flows has lights, objects and pedestrians, and what it draws is written and read again") {
   using Walked = World<BehaviorSet<IdmClassic, Pedestrian>, InterpolateExecution, SingleTrack>;
   auto const with = [](std::string const& flows, std::string const& rest) {

@@ -32,6 +32,7 @@ std::vector<std::string> rooms() {
 /// write maps and files or watch traffic rules, or only declare what other headers define.
 bool needs_more(std::string const& header) {
   std::set<std::string> const apart{"benchmark/benchmark_main.hpp",
+                                    "benchmark/benchmark_traffic.hpp",
                                     "benchmark/benchmark_on_ranks.hpp",
                                     "benchmark/run_on_processes.hpp",
                                     "benchmark/run_on_ranks.hpp",

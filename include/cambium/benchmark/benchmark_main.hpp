@@ -35,7 +35,7 @@ namespace cambium {
 /// Where `benchmark_main` looks for what the command line does not name.
 struct BenchmarkDefaults {
   std::string command{};  ///< runs the program, with the options that it has read itself; default: the program's path
-  std::filesystem::path sets = "sets";          ///< `--set NAME` means the files in `sets`/NAME
+  std::filesystem::path sets = "sets";          ///< `--set NAME` means the file or the folder `sets`/NAME
   std::string set = "examples";                 ///< used without `--set`
   std::filesystem::path out = "out/benchmark";  ///< the database is `out`/results.db
   Executor executor{};                          ///< where the jobs run, in place of threads; see `on_ranks`
@@ -62,8 +62,8 @@ struct BenchmarkCommand {
 /// The behaviours and sets that a program has, for `--list`.
 [[nodiscard]] std::string list_of(std::vector<std::string> const& behaviors, BenchmarkDefaults const& defaults);
 
-/// The scenario files that `--set` names: files, all files in a folder below `defaults.sets`, or one that has this name
-/// there.
+/// The scenario files that `--set` names: files, all files in a folder, or files and folders of this name below
+/// `defaults.sets`. Throws `Error` if there are none.
 [[nodiscard]] std::vector<std::filesystem::path> set_files(std::vector<std::string> const& names,
                                                            BenchmarkDefaults const& defaults);
 
@@ -179,6 +179,18 @@ template <class World>
   return sets;
 }
 
+/// While it lives, Ctrl-C says that the same command goes on, and ends the program.
+class SaysHowToGoOn {
+ public:
+  SaysHowToGoOn();
+  ~SaysHowToGoOn();
+  SaysHowToGoOn(SaysHowToGoOn const&) = delete;
+  SaysHowToGoOn& operator=(SaysHowToGoOn const&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
 /// Writes the replay of a run, and its snapshot beside it.
 void write_replay(std::filesystem::path const& replay, Run run);
 
@@ -203,9 +215,7 @@ void run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender
     throw Error("--replay", "is '" + *command.replay + "'", "give a name that ends in .html");
   auto const contender = chosen(contenders, {std::string(behavior)}).front();
   auto const& scenario = set->scenarios[*number];
-  auto run =
-      contender.run(scenario, {set->time_step, set->time_limit, command.options.plan_limit, label_of(title, *number)},
-                    command.replay.has_value());
+  auto run = contender.run(scenario, run_options(*set, *number, command.options), command.replay.has_value());
   std::cout << only << "\n  " << contender.parameters << "\n  seed: " << scenario.seed << "\n" << lines_of(run.result);
   if (run.recording) run.recording = titled(std::move(*run.recording), title, *number, contender.name, run.result);
   if (command.replay) write_replay(*command.replay, std::move(run));
@@ -223,6 +233,7 @@ void run_sets(std::vector<ScenarioSet<World>> const& sets, std::vector<std::file
   store.begin_run(time_of_day(), words);
   std::size_t jobs = 0, results = 0;
   auto const begin = std::chrono::steady_clock::now();
+  SaysHowToGoOn const on_interrupt;
   for (std::size_t s = 0; s < sets.size(); ++s) {
     ProgressBar bar(sets[s].title + " (" + std::to_string(s + 1) + " of " + std::to_string(sets.size()) + ")");
     options.progress = [&bar](std::size_t done, std::size_t total) { bar(done, total); };

@@ -1,9 +1,15 @@
 #pragma once
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <unistd.h>
+#endif
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
+#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -236,7 +242,9 @@ CAMBIUM_COLD std::vector<std::filesystem::path> set_files(std::vector<std::strin
     std::filesystem::path const places[] = {name, folder / (name + ".json"), folder / defaults.set / (name + ".json")};
     auto const* const place =
         std::ranges::find_if(places, [](auto const& path) { return std::filesystem::is_regular_file(path); });
-    bool const is_folder = !name.empty() && std::filesystem::is_directory(folder / name);
+    std::filesystem::path const whole =
+        std::filesystem::is_directory(folder / name) ? folder / name : std::filesystem::path(name);
+    bool const is_folder = !name.empty() && std::filesystem::is_directory(whole);
     auto const nested = is_folder || name.empty() ? std::nullopt : nested_set(folder, name);
     if (place != std::end(places)) {
       files.push_back(*place);
@@ -244,8 +252,11 @@ CAMBIUM_COLD std::vector<std::filesystem::path> set_files(std::vector<std::strin
       files.push_back(*nested);
     } else if (is_folder) {
       auto const first = static_cast<std::ptrdiff_t>(files.size());
-      for (auto const& entry : std::filesystem::directory_iterator(folder / name))
+      for (auto const& entry : std::filesystem::directory_iterator(whole))
         if (entry.path().extension() == ".json") files.push_back(entry.path());
+      if (files.begin() + first == files.end())
+        throw Error("--set " + name, "the folder " + whole.string() + " has no scenario files (.json)",
+                    "--list names the sets that there are");
       std::sort(files.begin() + first, files.end());
     } else {
       throw Error("--set " + name, "is neither a scenario file nor a folder in " + folder.string(),
@@ -278,6 +289,15 @@ CAMBIUM_COLD std::string summary_json(std::vector<TrafficGroup> const& parts) {
                                     {"off_route", "off_route"},
                                     {"timed_out", "timed_out"},
                                     {"error", "error"},
+                                    {"infeasible", "infeasible"},
+                                    {"red_light", "red_light"},
+                                    {"stop_sign", "stop_sign"},
+                                    {"right_of_way", "right_of_way"},
+                                    {"wrong_way", "wrong_way"},
+                                    {"speeding", "speeding"},
+                                    {"solid_line", "solid_line"},
+                                    {"imposed_braking", "imposed_braking"},
+                                    {"impact_speed", "impact_speed"},
                                     {"mean_time_s", "mean_time_s"},
                                     {"closed_loop_score", "closed_loop_score"},
                                     {"ms_per_decision", "mean_ms"}})
@@ -301,6 +321,20 @@ CAMBIUM_COLD std::string source_of(BenchmarkCommand const& command, std::filesys
   return "--set " + shell_word(is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file)) +
          command.drawing;
 }
+
+extern "C" inline void say_how_to_go_on(int signal) {
+  constexpr char text[] = "\ninterrupted: the same command goes on where it was\n";
+#if defined(__unix__) || defined(__APPLE__)
+  [[maybe_unused]] auto const written = write(STDERR_FILENO, text, sizeof text - 1);
+#else
+  std::fputs(text, stderr);
+#endif
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
+}
+
+CAMBIUM_COLD SaysHowToGoOn::SaysHowToGoOn() : before_(std::signal(SIGINT, &say_how_to_go_on)) {}
+CAMBIUM_COLD SaysHowToGoOn::~SaysHowToGoOn() { std::signal(SIGINT, before_); }
 
 CAMBIUM_COLD void write_replay(std::filesystem::path const& replay, Run run) {
   if (!run.recording)
@@ -326,8 +360,11 @@ CAMBIUM_COLD std::string lines_of(RunResult const& result) {
     text += std::string("  ") + entry.name + ": ";
     if constexpr (std::is_same_v<Field, std::string>)
       text += result.*entry.field;
+    else if (auto const value = PlainValue::at(&(result.*entry.field), type_info<Field>());
+             type_info<Field>().is_real() && std::isnan(value.number))
+      text += "undefined";
     else
-      text += with_unit(value_text(entry, PlainValue::at(&(result.*entry.field), type_info<Field>())), entry.unit);
+      text += with_unit(value_text(entry, value), entry.unit);
     text += "\n";
   });
   return text;

@@ -32,6 +32,7 @@ struct Comparison {
   std::size_t scenarios = 0;
   std::vector<Change> changes{};
   std::vector<std::int64_t> lost{}, won{};  ///< scenarios in which only the first, only the second succeeds
+  std::vector<std::string> why_lost{};      ///< of each of `lost`: "red_light at 3.4 s", "time-out"
 };
 
 /// Comparisons made together.
@@ -53,11 +54,12 @@ struct Comparisons {
 };
 
 /// Compares results with older ones: each behaviour with that of the same name on the same set, with equal parameters
-/// if there is one, else of the latest version. p values are adjusted by Holm's method for all measures that are better
-/// or worse and differ in some scenario; one below `level` gives a verdict. So a report on equally good behaviours
-/// finds a significant difference with a probability of at most about `level`. A scenario counts in the mean of a
-/// measure where both values are finite. Throws `Error` if the two have no scenario in common; `old_name` and
-/// `new_name` are for messages. The same on any number of threads. O(measures × scenarios ×
+/// if there is one, else of the latest version. Sets are the same by their hashes; or by title and seeds of scenarios,
+/// as other versions of cambium hash otherwise, and then the comparison says so. p values are adjusted by Holm's method
+/// for all measures that are better or worse and differ in some scenario; one below `level` gives a verdict. So a
+/// report on equally good behaviours finds a significant difference with a probability of at most about `level`. A
+/// scenario counts in the mean of a measure where both values are finite. Throws `Error` if the two have no scenario in
+/// common; `old_name` and `new_name` are for messages. The same on any number of threads. O(measures × scenarios ×
 /// resamples).
 [[nodiscard]] Comparisons compare_against(std::vector<ResultGroup> const& old_groups,
                                           std::vector<ResultGroup> const& new_groups, std::string const& old_name,

@@ -7,6 +7,7 @@
 #include <functional>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -42,6 +43,26 @@ void for_each_common(ResultGroup const& a, ResultGroup const& b, F const& f) {
     if (next_a) ++i;
     if (next_b) ++j;
   }
+}
+
+/// Whether two groups ran the same scenarios: by the hash of their set, or by its title and the seeds, which are drawn.
+[[nodiscard]] inline bool same_scenarios(ResultGroup const& a, ResultGroup const& b) {
+  if (a.set_hash == b.set_hash) return true;
+  bool equal = a.set == b.set, any = false;
+  for_each_common(a, b, [&](auto const& x, auto const& y) {
+    equal = equal && x.seed == y.seed;
+    any = any || x.seed != 0;
+  });
+  return equal && any;
+}
+
+/// Why a run was no success, in a word or two.
+[[nodiscard]] inline std::string why_failed(RunResult const& result) {
+  auto const outcome = outcome_of(result);
+  auto const violations = violations_of(result);
+  if (std::string(run_outcomes[outcome]) != "violation" || violations.empty()) return run_outcomes[outcome];
+  return violations.front().text.substr(0, violations.front().text.find_first_of(" :")) + " at " +
+         rounded_text(violations.front().time) + " s";
 }
 
 /// A change without p value and interval; `differences` receives those of its pairs.
@@ -108,9 +129,13 @@ inline void judge_changes(Comparisons& comparisons) {
   std::size_t tests = 0;
   for (auto const& pair : pairs) {
     Comparison comparison{.set = pair.after->set_label, .before = pair.before->label, .after = pair.after->label};
+    if (pair.before->set_hash != pair.after->set_hash) comparison.set += " (by title and seeds; the hashes differ)";
     for_each_common(*pair.before, *pair.after, [&](auto const& a, auto const& b) {
       ++comparison.scenarios;
-      if (a.result.success && !b.result.success) comparison.lost.push_back(a.scenario);
+      if (a.result.success && !b.result.success) {
+        comparison.lost.push_back(a.scenario);
+        comparison.why_lost.push_back(why_failed(b.result));
+      }
       if (!a.result.success && b.result.success) comparison.won.push_back(a.scenario);
     });
     if (comparison.scenarios == 0) continue;
@@ -147,9 +172,10 @@ CAMBIUM_COLD Comparisons compare_against(std::vector<ResultGroup> const& old_gro
   for (auto const& group : new_groups) {
     ResultGroup const* found = nullptr;
     for (auto const& old : old_groups) {
-      if (old.set_hash != group.set_hash || old.behavior != group.behavior) continue;
+      if (old.behavior != group.behavior || !detail::same_scenarios(old, group)) continue;
       auto const rank = [&](ResultGroup const& other) {
-        return std::pair(other.parameters_hash == group.parameters_hash, detail::numbers_of(other.version));
+        return std::tuple(other.set_hash == group.set_hash, other.parameters_hash == group.parameters_hash,
+                          detail::numbers_of(other.version));
       };
       if (found == nullptr || rank(old) >= rank(*found)) found = &old;
     }
@@ -168,7 +194,7 @@ CAMBIUM_COLD Comparisons compare_against(std::vector<ResultGroup> const& old_gro
   for (auto const& old : old_groups) {
     if (std::find(used.begin(), used.end(), &old) != used.end()) continue;
     bool const has_heir = std::any_of(used.begin(), used.end(), [&](auto const* other) {
-      return other->set_hash == old.set_hash && other->behavior == old.behavior;
+      return other->behavior == old.behavior && detail::same_scenarios(*other, old);
     });
     (has_heir ? left_out : missing).push_back(old.set_label + ": " + old.label + " is only in " + old_name);
   }
@@ -177,8 +203,7 @@ CAMBIUM_COLD Comparisons compare_against(std::vector<ResultGroup> const& old_gro
   result.missing = std::move(missing);
   if (result.list.empty())
     throw Error(new_name, "has no scenario and behaviour in common with " + old_name,
-                "run the same set with behaviours of the same names: a set that was changed, or run by an older "
-                "cambium, may be another set");
+                "run the same set with behaviours of the same names: a set that was changed may be another set");
   return result;
 }
 

@@ -12,24 +12,19 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
+#include "cambium/benchmark/detail/run_judge.hpp"
 #include "cambium/benchmark/run_result.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
-#include "cambium/evaluation/collision.hpp"
-#include "cambium/evaluation/driving.hpp"
-#include "cambium/evaluation/metrics/closed_loop_score.hpp"
-#include "cambium/evaluation/metrics/over_time.hpp"
-#include "cambium/evaluation/metrics/post_encroachment_time.hpp"
-#include "cambium/evaluation/metrics/rss_compliance.hpp"
-#include "cambium/evaluation/off_road.hpp"
 #include "cambium/goal/goal.hpp"
+#include "cambium/map/map.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 #include "cambium/viewer/record_world.hpp"
 #include "cambium/world/world.hpp"
@@ -43,7 +38,8 @@ struct RunOptions {
   /// Longest time that all plans of a run may take together, of the wall clock [s]. A run that exceeds it ends with an
   /// error after that plan. The outcome then depends on the machine.
   double plan_limit = std::numeric_limits<double>::infinity();
-  std::string label{};  ///< of the run, for notes: "merging, scenario 17"
+  std::string label{};                           ///< of the run, for notes: "merging, scenario 17"
+  std::vector<Criterion> fails = usual_fails();  ///< what makes a run no success, besides a collision
 };
 
 /// The outcome of a run: its result and times; if it was recorded, also the recording and, after a failure, the
@@ -191,106 +187,6 @@ class LastWorlds {
   std::deque<World> worlds_{};
 };
 
-/// The absolute value of evaluator `E`.
-template <class E>
-struct SizeOf {
-  template <class World>
-  [[nodiscard]] double operator()(World& world, Slot slot) const {
-    return std::abs(E{}(world, slot));
-  }
-};
-
-/// Judges a run of one agent.
-template <class World>
-class RunJudge {
- public:
-  RunJudge(World& world, Slot ego) : ego_(ego) { observe(world, 0.0); }
-
-  void observe(World& world, double dt) {
-    std::apply([&](auto&... metric) { (metric.recorder.observe(world, ego_, dt), ...); }, metrics_);
-    result_.off_road = result_.off_road || OffRoad{}(world, ego_);
-    result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
-    if (auto const contact = Collision{}.contact(world, ego_)) {
-      result_.collision = true;
-      result_.hit = contact->agent;
-      result_.at_fault = AtFaultCollision{}(world, ego_);
-    }
-    auto const pair = AnyCollision{}.pair(world);
-    bool const others = pair && pair->first != id(world) && pair->second != id(world);
-    if (pair && !result_.collision) note_drive_through(world);
-    result_.others_collided += others && !others_collide_;
-    others_collide_ = others;
-  }
-
-  [[nodiscard]] RunResult& result() { return result_; }
-
-  [[nodiscard]] RunResult finished(World const& world) {
-    result_.steps = static_cast<std::int64_t>(world.frame().step);
-    result_.duration_s = world.time();
-    std::apply([&](auto const&... metric) { (metric.write(result_), ...); }, metrics_);
-    if (!result_.success) result_.closed_loop_score = 0.0;  // it made no progress in nuPlan's sense
-    return result_;
-  }
-
- private:
-  /// A collision between two frames counts, too. Nobody is at fault: how they met is not known.
-  void note_drive_through(World const& world) {
-    if (!in_traffic(world, ego_)) return;
-    auto const own = motion_at(world, ego_);
-    for (Slot slot{}; index_of(slot) < world.size() && !result_.collision; ++slot) {
-      if (slot == ego_ || !in_traffic(world, slot) || !geometry::intersects(own, motion_at(world, slot))) continue;
-      result_.collision = true;
-      result_.hit = world.roster().agents[slot].id;
-    }
-  }
-
-  struct Speed {
-    [[nodiscard]] double operator()(World const& world, Slot slot) const {
-      return world.frame().agents[slot].state.speed;
-    }
-  };
-  struct Braking {
-    [[nodiscard]] double operator()(World const& world, Slot slot) const { return -Acceleration{}(world, slot); }
-  };
-  // Infinite where nobody is ahead.
-  struct GapAhead : Gap {
-    GapAhead() : Gap{std::numeric_limits<double>::infinity()} {}
-  };
-  struct CollisionTime : TimeToCollision {
-    CollisionTime() : TimeToCollision{std::numeric_limits<double>::infinity()} {}
-  };
-  /// Writes a recorder's value into a field of the result; a size is at least 0.
-  template <auto field, class Recorder, bool is_size = false>
-  struct Metric {
-    Recorder recorder{};
-
-    void write(RunResult& result) const {
-      auto value = recorder.value();
-      if constexpr (is_size) value = std::max(0.0, value);
-      result.*field = static_cast<std::remove_reference_t<decltype(result.*field)>>(value);
-    }
-  };
-  template <auto field, class Recorder>
-  using NonNegative = Metric<field, Recorder, true>;
-  using R = RunResult;
-  using Metrics =
-      std::tuple<Metric<&R::progress_m, Integral<Progress>>, NonNegative<&R::mean_speed, MeanOf<Speed>>,
-                 Metric<&R::least_gap, Least<GapAhead>>, Metric<&R::least_time_to_collision, Least<CollisionTime>>,
-                 Metric<&R::post_encroachment_time, PostEncroachmentTime>,
-                 NonNegative<&R::required_deceleration, Most<RequiredDeceleration>>,
-                 NonNegative<&R::hardest_braking, Most<Braking>>, NonNegative<&R::largest_jerk, Most<SizeOf<Jerk>>>,
-                 NonNegative<&R::largest_lateral_acceleration, Most<SizeOf<LateralAcceleration>>>,
-                 Metric<&R::hard_brakings, Times<HardBraking>>, Metric<&R::rss_compliance, RssCompliance>,
-                 Metric<&R::closed_loop_score, ClosedLoopScore>>;
-
-  [[nodiscard]] AgentId id(World const& world) const { return world.roster().agents[ego_].id; }
-
-  Slot ego_;
-  RunResult result_;
-  bool others_collide_ = false;
-  Metrics metrics_{};
-};
-
 /// Why a run cannot go on after a step with a problem: the behaviour under test, which drives `own` (the ego first),
 /// has failed. Empty if only others have failed.
 template <class World>
@@ -306,6 +202,14 @@ template <class World>
   return {};
 }
 
+/// Throws `ParameterError` if a criterion asks what the map cannot answer.
+inline void require_answers(Map const& map, std::span<Criterion const> fails) {
+  bool const asks = std::ranges::find(fails, Criterion::speeding) != fails.end();
+  if (asks && std::ranges::all_of(map.lanes(), [](auto const& lane) { return lane.speed_limits.empty(); }))
+    throw ParameterError("the set", "fails runs by \"speeding\", but no lane of the map has a speed limit",
+                         "leave it out of \"fails\", or give the map limits");
+}
+
 /// Runs a world until its ego is at its goal, collides, leaves the road or the map, time is up, or an agent of `own`
 /// (the ego first) fails. Without a goal, the ego succeeds at the end of its route. Calls
 /// `after_step(world, result)`, which may add an error.
@@ -315,7 +219,7 @@ template <class World, class AfterStep>
   auto const slot = world.slot_of(own.front());
   bool const has_goal = !std::holds_alternative<NoGoal>(world.roster().goals[slot]);
   world.keep_history(1);
-  RunJudge<World> judge(world, slot);
+  RunJudge<World> judge(world, own);
   auto& result = judge.result();
   auto const most = static_cast<std::uint64_t>(std::ceil(options.time_limit / options.time_step - 1e-9));
   bool is_over = result.collision;
@@ -336,7 +240,7 @@ template <class World, class AfterStep>
     result.timed_out = !is_over && world.frame().step >= most;
     is_over = is_over || result.timed_out;
   }
-  return judge.finished(world);
+  return judge.finished(world, options.fails);
 }
 
 /// The scenario with `choose(spec, scenario)` as the behaviour of the agents `own`, the ego first; `clock` times them.
@@ -397,6 +301,7 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
       own.insert(own.end(), scenario.controlled.begin(), scenario.controlled.end());
       auto const ours = detail::with_timed_behaviors<World>(scenario, own, choose, clock);
       auto world = ours.make_world();
+      detail::require_answers(world.map(), options.fails);
       if (records) {
         film.emplace(world);
         film->show_as(scenario.ego, RecordedAgentKind::ego, "ego");

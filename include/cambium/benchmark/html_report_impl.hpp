@@ -19,6 +19,7 @@
 #include "cambium/benchmark/detail/report_text.hpp"
 #include "cambium/benchmark/html_report.hpp"
 #include "cambium/benchmark/run_result.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/markup.hpp"
@@ -141,7 +142,7 @@ namespace detail {
   auto const add = [](std::string& list, std::string const& item, char const* separator = ",") {
     list += (list.empty() ? "" : separator) + item;
   };
-  std::string names, outcomes, groups, rows, errors, seeds, hits, made, frozen;
+  std::string names, outcomes, groups, rows, errors, seeds, hits, violations, made, frozen;
   std::vector<std::size_t> columns;
   for (char const* key :
        {"duration_s", "mean_speed", "least_gap", "least_time_to_collision", "post_encroachment_time", "hardest_braking",
@@ -149,7 +150,7 @@ namespace detail {
     columns.push_back(measure_index(key));
     add(names, json_string(titled(measures()[columns.back()])));
   }
-  for (char const* outcome : run_outcomes) add(outcomes, json_string(outcome));  // their colours are --o0 to --o5
+  for (char const* outcome : run_outcomes) add(outcomes, json_string(outcome));  // their colours are --o0 to --o6
   std::size_t index = 0;
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
     auto const& group = report.groups[g];
@@ -168,6 +169,12 @@ namespace detail {
       add(rows, numbers + "]", ",\n");
       auto const key = "\"" + std::to_string(index) + "\":";
       if (!row.result.error.empty()) add(errors, key + json_string(row.result.error));
+      std::string items;
+      double const step = row.result.steps > 0 ? row.result.duration_s / static_cast<double>(row.result.steps) : 0.0;
+      for (auto const& [time, text] : violations_of(row.result))
+        add(items, "[" + std::to_string(step > 0.0 ? std::llround(time / step) : 0) + "," +
+                       json_string(rounded_text(time) + " s " + text) + "]");
+      if (!items.empty()) add(violations, key + "[" + items + "]");
       if (is_valid(row.result.hit)) add(hits, key + "\"" + to_string(row.result.hit) + "\"");
       add(seeds, "\"" + std::to_string(row.seed) + "\"");
       std::error_code ignored;
@@ -183,8 +190,8 @@ namespace detail {
   return "{\"replays\":" + json_string(options.replays.generic_string()) +
          ",\"folder\":" + json_string((options.page_folder / options.replays).lexically_normal().generic_string()) +
          ",\"columns\":[" + names + "],\"outcomes\":[" + outcomes + "],\n\"groups\":[" + groups + "],\n\"rows\":[" +
-         rows + "],\n\"errors\":{" + errors + "},\n\"hits\":{" + hits + "},\n\"made\":[" + made + "],\n\"frozen\":[" +
-         frozen + "],\n\"seeds\":[" + seeds + "]}";
+         rows + "],\n\"errors\":{" + errors + "},\n\"hits\":{" + hits + "},\n\"violations\":{" + violations +
+         "},\n\"made\":[" + made + "],\n\"frozen\":[" + frozen + "],\n\"seeds\":[" + seeds + "]}";
 }
 
 }  // namespace detail

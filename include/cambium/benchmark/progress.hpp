@@ -27,7 +27,8 @@ namespace cambium {
   return text;
 }
 
-/// A line on a terminal's error stream that shows how far the work is; silent elsewhere. One thread at a time calls it.
+/// A line on the error stream that shows how far the work is: on a terminal one that changes, elsewhere a new one each
+/// minute. One thread at a time calls it.
 class ProgressBar {
  public:
   /// `what` stands at the head of the line.
@@ -43,16 +44,22 @@ class ProgressBar {
   }
 
   void operator()(std::size_t done, std::size_t total) {
-    if (!is_terminal_ || total == 0) return;
+    if (total == 0) return;
     auto const now = Clock::now();
+    auto const text = [&] { return progress_text(done, total, std::chrono::duration<double>(now - begin_).count()); };
+    if (!is_terminal_) {
+      if (now - drawn_at_ < std::chrono::minutes(1)) return;
+      drawn_at_ = now;
+      std::fprintf(stderr, "  %s: %s\n", what_.c_str(), text().c_str());
+      return;
+    }
     if (done < total && now - drawn_at_ < std::chrono::milliseconds(200)) return;
     drawn_at_ = now;
     is_drawn_ = true;
     constexpr std::size_t width = 24;
     auto const filled = width * done / total;
     auto const bar = std::string(filled, '#') + std::string(width - filled, '.');
-    std::fprintf(stderr, "\r  %s [%s] %s\033[K", what_.c_str(), bar.c_str(),
-                 progress_text(done, total, std::chrono::duration<double>(now - begin_).count()).c_str());
+    std::fprintf(stderr, "\r  %s [%s] %s\033[K", what_.c_str(), bar.c_str(), text().c_str());
     std::fflush(stderr);
   }
 
@@ -60,7 +67,7 @@ class ProgressBar {
   using Clock = std::chrono::steady_clock;
 
   std::string what_;
-  Clock::time_point begin_ = Clock::now(), drawn_at_ = begin_ - std::chrono::hours(1);
+  Clock::time_point begin_ = Clock::now(), drawn_at_ = begin_;
   bool is_terminal_ = false, is_drawn_ = false;
 };
 

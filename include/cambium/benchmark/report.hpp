@@ -33,13 +33,14 @@ struct Report {
 /// O(rows × measures × resamples of a bootstrap).
 [[nodiscard]] Report make_report(std::vector<ResultGroup> groups, double level = 0.05);
 
-/// The tables of a report: an overview; for each set the outcomes, the means and the planning times of each behaviour,
-/// and the differences between each two; then the comparisons. Tables of means have at most `columns` measures, but at
-/// least one.
+/// The tables of a report: an overview; for each set the outcomes, violations, means and planning times of each
+/// behaviour, and the differences between each two; then the comparisons. Tables of means have at most `columns`
+/// measures, but at least one.
 [[nodiscard]] std::vector<Table> tables_of(Report const& report, std::size_t columns = 7);
 
-/// One table a set of what matters most, without intervals: outcomes, duration, closed-loop score and planning time of
-/// each behaviour; then an overview, if there are several sets. Groups of a set are neighbours.
+/// One table a set of what matters most, without intervals: outcomes, violations that there are, duration, closed-loop
+/// score and planning time of each behaviour; then an overview, if there are several sets. Groups of a set are
+/// neighbours.
 [[nodiscard]] std::vector<Table> summary_of(std::vector<ResultGroup> const& groups);
 
 /// A sentence for each group with errors: how many, and the first: "merging, mine: 2 of 16 runs ended with an error,

@@ -43,8 +43,12 @@ namespace detail {
   return number(value) + " (" + low + (has_sign ? " to " : "-") + high + ")";
 }
 
+/// A few of many as a count: "3/100 (1.0-8.5)".
 [[nodiscard]] inline std::string cell_of(Measure const& measure, Estimate const& estimate, std::size_t scenarios) {
-  auto const text = with_interval(estimate.value, estimate.interval, measure.is_share, false);
+  auto text = with_interval(estimate.value, estimate.interval, measure.is_share, false);
+  double const hits = estimate.value * static_cast<double>(estimate.count);
+  if (measure.is_share && hits > 0.5 && hits < 4.5)
+    text.replace(0, text.find(' '), fixed_text(hits, 0) + "/" + std::to_string(estimate.count));
   return estimate.count == scenarios || estimate.count == 0 ? text : text + " n=" + std::to_string(estimate.count);
 }
 
@@ -169,11 +173,13 @@ namespace detail {
 
 inline constexpr char const* finding_words[] = {"", "better", "worse"};
 
-[[nodiscard]] inline std::string numbers_text(std::vector<std::int64_t> const& numbers) {
+/// "3 (time-out), 7": at most twelve. `why`: of each, or empty.
+[[nodiscard]] inline std::string numbers_text(std::vector<std::int64_t> const& numbers,
+                                              std::vector<std::string> const& why = {}) {
   constexpr std::size_t most = 12;
   std::string text;
   for (std::size_t i = 0; i < std::min(most, numbers.size()); ++i)
-    text += (i == 0 ? "" : ", ") + std::to_string(numbers[i]);
+    text += (i == 0 ? "" : ", ") + std::to_string(numbers[i]) + (why.empty() ? "" : " (" + why[i] + ")");
   return numbers.size() > most ? text + " and " + std::to_string(numbers.size() - most) + " more" : text;
 }
 
@@ -204,7 +210,8 @@ inline constexpr char const* finding_words[] = {"", "better", "worse"};
     table.note = "No difference.";
   else if (!equal.empty())
     table.note = "Equal in each scenario: " + equal + ".";
-  if (!comparison.lost.empty()) table.note += " Success lost in scenarios " + numbers_text(comparison.lost) + ".";
+  if (!comparison.lost.empty())
+    table.note += " Success lost in scenarios " + numbers_text(comparison.lost, comparison.why_lost) + ".";
   if (!comparison.won.empty()) table.note += " Success won in scenarios " + numbers_text(comparison.won) + ".";
   return table;
 }
@@ -257,10 +264,10 @@ CAMBIUM_COLD Report make_report(std::vector<ResultGroup> groups, double level) {
 
 CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t columns) {
   std::vector<Table> tables;
-  std::vector<std::size_t> shares, means;
+  std::vector<std::size_t> shares, rules, means;
   for (std::size_t m = 0; m < measures().size(); ++m) {
     if (measures()[m].is_share)
-      shares.push_back(m);
+      (m <= measure_index("error") ? shares : rules).push_back(m);
     else if (!measures()[m].is_time && measures()[m].key != "steps")  // the duration says that
       means.push_back(m);
   }
@@ -275,7 +282,8 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
       tables.push_back(std::move(table));
     };
     add(detail::measure_table(report, set, shares, "outcomes"));
-    tables.back().note = "Shares of the scenarios; in brackets: 95 % intervals (Wilson).";
+    add(detail::measure_table(report, set, rules, "violations"));
+    tables.back().note = "Shares of the scenarios, the smallest as counts; in brackets: 95 % intervals [%] (Wilson).";
     for (std::size_t begin = 0; begin < means.size(); begin += columns) {
       auto const first = means.begin() + static_cast<std::ptrdiff_t>(begin);
       auto const last = means.begin() + static_cast<std::ptrdiff_t>(std::min(means.size(), begin + columns));
@@ -294,10 +302,17 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
 
 CAMBIUM_COLD std::vector<Table> summary_of(std::vector<ResultGroup> const& groups) {
   std::vector<Measure const*> chosen;
-  for (auto const& measure : measures())
-    if (measure.is_share || measure.key == "duration_s" || measure.key == "closed_loop_score" ||
-        measure.key == "mean_ms")
+  auto const occurs = [&](Measure const& measure) {
+    return std::ranges::any_of(groups,
+                               [&](auto const& group) { return detail::mean_of_measure(group, measure) > 0.0; });
+  };
+  for (std::size_t m = 0; m < measures().size(); ++m) {
+    auto const& measure = measures()[m];
+    bool const is_outcome = measure.is_share && m <= measure_index("error");
+    if (is_outcome || (measure.is_share && measure.key != "violations" && occurs(measure)) ||
+        measure.key == "duration_s" || measure.key == "closed_loop_score" || measure.key == "mean_ms")
       chosen.push_back(&measure);
+  }
   std::vector<Table> tables;
   auto const sets = detail::groups_by_set(groups);
   for (auto const& set : sets) {

@@ -102,6 +102,13 @@ template <class World>
          std::to_string(count) + " in the set): choose a shorter time_step";
 }
 
+/// How scenario `number` of a set is run.
+template <class World>
+[[nodiscard]] RunOptions run_options(ScenarioSet<World> const& set, std::size_t number,
+                                     BenchmarkOptions const& options) {
+  return {set.time_step, set.time_limit, options.plan_limit, label_of(set.title, number), set.fails};
+}
+
 /// Hash of what a process has read: scenarios of hash `set`, and a contender.
 template <class World>
 [[nodiscard]] std::uint64_t setup_of(std::uint64_t set, Contender<World> const& contender) {
@@ -126,7 +133,7 @@ template <class World>
     if (job >= contenders.size() * set.scenarios.size()) return JobOutcome{.setup = 1};  // a worker that has other ones
     auto const c = job / set.scenarios.size(), i = job % set.scenarios.size();
     auto const& scenario = set.scenarios[i];
-    RunOptions const how{set.time_step, set.time_limit, options.plan_limit, label_of(set.title, i)};
+    auto const how = run_options(set, i, options);
     bool const all = options.replays == Replays::all;
     auto run = contenders[c].run(scenario, how, all);
     JobOutcome outcome{run.result, run.times, {}, {}, {}, setup_of(hash, contenders[c])};

@@ -186,8 +186,9 @@ class JsonReader {
           std::find_if(fields.begin(), fields.end(), [&](FieldInfo const& one) { return one.name == member.first; });
       if (field == fields.end()) {
         std::vector<std::string> within;
+        constexpr std::size_t enough = 16;
         if (auto const* const inner = member.second.members())
-          for (auto const& one : *inner) within.push_back(one.first);
+          for (std::size_t i = 0; i < std::min(enough, inner->size()); ++i) within.push_back((*inner)[i].first);
         throw ParameterError(where(path), "has no field \"" + member.first + "\"",
                              suggest_field(type, member.first, within));
       }

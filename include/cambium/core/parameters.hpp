@@ -57,6 +57,7 @@ struct ParameterPath {
   ParameterPath const* outer;
   char const* name;
   std::size_t element = no_list;  ///< index in the list; where the name is empty, in an element of a list of lists
+  bool is_alternative = false;    ///< the name is that of the alternative that a `OneOf` holds
 
   [[nodiscard]] std::string text() const;
   /// Whether any part of the path stands for all elements of a list ("[]").
@@ -81,7 +82,7 @@ class ValueVisitor {
   virtual void alternative(ParameterPath const&, ParameterInfo const&, std::string const&) {}
   /// A list or an optional holds so many values, which follow.
   virtual void count(ParameterPath const&, ParameterInfo const&, std::size_t) {}
-  /// The fields of a struct are done.
+  /// The fields of a struct, or of an alternative, are done.
   virtual void end(ParameterPath const&, TypeInfo const&, void const*) {}
 
  protected:
@@ -165,7 +166,8 @@ template <Described T>
 }
 
 /// Hash of the struct's name, its keys and the bits of its values. It is the same on every platform and in every run,
-/// and changes when a field is renamed. Equal parameters have equal hashes.
+/// and changes when a field is renamed. Equal parameters have equal hashes, also where one program has a field as a
+/// struct and another as a `OneOf` that holds that struct.
 template <Described T>
 [[nodiscard]] std::uint64_t hash_parameters(T const& object) {
   return detail::parameters_hash(type_info<T>(), &object);

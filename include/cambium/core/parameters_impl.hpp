@@ -209,11 +209,12 @@ CAMBIUM_COLD void visit_values(ParameterPath const& path, ParameterInfo const& i
       return visitor.text(path, info, *static_cast<std::string const*>(object));
     case TypeInfo::Kind::one_of: {
       auto const& model = type.alternatives[type.index(object)]();
-      ParameterPath const inner{&path, model.name};
+      ParameterPath const inner{&path, model.name, ParameterPath::no_list, true};
       auto const named = alternative_name(type, type.index(object));
       visitor.alternative(path, info, named.empty() ? model.name : named);
-      if (model.kind == TypeInfo::Kind::structure) visit_fields(model, type.held(object), &inner, lists, visitor);
-      return;
+      if (model.kind == TypeInfo::Kind::structure)
+        return visit_fields(model, type.held(object), &inner, lists, visitor);
+      return visitor.end(inner, model, type.held(object));
     }
     case TypeInfo::Kind::optional:
       visitor.count(path, info, type.held(object) != nullptr ? 1 : 0);
@@ -324,29 +325,33 @@ CAMBIUM_COLD std::uint64_t parameters_hash(TypeInfo const& type, void const* obj
 
     void add_bits(std::uint64_t bits) { hash = mixed(hash, bits); }
     void add_text(std::string_view text) { add_bits(checksum_of(text)); }
-    void add_path(ParameterPath const& path, ParameterInfo const& info) {
+    void add_path(ParameterPath const& path) {
       for (auto const* key = &path; key != nullptr; key = key->outer) {
-        if (key != &path) add_text(key->name);
+        if (!key->is_alternative) add_text(key->name);
         if (key->element != key->no_list) add_bits(key->element);
       }
-      add_text(info.name);
     }
-    void value(ParameterPath const& path, ParameterInfo const& info, PlainValue const& value) override {
-      add_path(path, info);
+    void value(ParameterPath const& path, ParameterInfo const&, PlainValue const& value) override {
+      add_path(path);
       // + 0.0 turns -0 into 0
       add_bits(value.is_real() ? std::bit_cast<std::uint64_t>(value.number + 0.0) : value.bits);
     }
-    void text(ParameterPath const& path, ParameterInfo const& info, std::string const& text) override {
-      add_path(path, info);
+    void text(ParameterPath const& path, ParameterInfo const&, std::string const& text) override {
+      add_path(path);
       add_text(text);
     }
-    void alternative(ParameterPath const& path, ParameterInfo const& info, std::string const& name) override {
-      add_path(path, info);
+    void count(ParameterPath const& path, ParameterInfo const&, std::size_t parts) override {
+      add_path(path);
+      add_bits(parts);
+    }
+    void alternative(ParameterPath const& path, ParameterInfo const&, std::string const& name) override {
+      if (name.find('/') == name.npos) return;  // `end` adds it
+      add_path(path);
       add_text(name);
     }
-    void count(ParameterPath const& path, ParameterInfo const& info, std::size_t parts) override {
-      add_path(path, info);
-      add_bits(parts);
+    void end(ParameterPath const& path, TypeInfo const& type, void const*) override {
+      add_path(path);
+      add_text(type.name);
     }
   } hash;
   hash.add_text(type.name);

@@ -15,6 +15,25 @@
 
 namespace cambium {
 
+/// What can make a run no success, besides a collision: a motion that no vehicle can make, or a broken rule.
+enum class Criterion : std::uint8_t {
+  infeasible,
+  red_light,
+  stop_sign,
+  right_of_way,
+  wrong_way,
+  speeding,
+  solid_line,
+  off_road,
+  imposed_braking,
+  straddling
+};
+
+/// What does so where a set does not choose.
+[[nodiscard]] inline std::vector<Criterion> usual_fails() {
+  return {Criterion::infeasible, Criterion::red_light, Criterion::wrong_way};
+}
+
 /// Scenarios that belong together, and how they are run.
 template <class WorldType>
 struct ScenarioSet {
@@ -24,6 +43,7 @@ struct ScenarioSet {
   std::vector<Scenario<WorldType>> scenarios{};
   std::vector<ScenarioRecipe<WorldType>> recipes{};  ///< for more scenarios; empty once these are drawn
   int format = 0;                                    ///< version of the file that it was read from; 0: none
+  std::vector<Criterion> fails = usual_fails();      ///< what makes a run no success, besides a collision
 
   static constexpr int latest_format = 1;
   static constexpr char const* name = "scenario_set";
@@ -35,7 +55,11 @@ struct ScenarioSet {
         parameter("time_step", &P::time_step, "s", Range{0.001, 10}, "of the simulation"),
         parameter("time_limit", &P::time_limit, "s", Range{0.001, 1e6}, "a scenario that takes longer has timed out"),
         parameter("scenarios", &P::scenarios, "situations to start from"),
-        parameter("recipes", &P::recipes, "for more of them, drawn when the file is read"));
+        parameter("recipes", &P::recipes, "for more of them, drawn when the file is read"),
+        choice("fails", &P::fails,
+               "infeasible|red_light|stop_sign|right_of_way|wrong_way|speeding|solid_line|off_road|imposed_braking|"
+               "straddling",
+               "what makes a run no success, besides a collision"));
   }
 
   /// Hash of everything that a run depends on, the maps' content included, see `content_hash`; not of names.

@@ -10,13 +10,13 @@ inline constexpr std::string_view report_style = R"css(
   color-scheme: light dark;
   --page: #f4f6f8; --panel: #ffffff; --line: #d9dfe5; --text: #16202b; --soft: #5b6a79; --accent: #1268d3;
   --stripe: #f8fafb; --box: #cfe0f6; --good: #1a8a45; --bad: #c9302c;
-  --o0: #2f9e5b; --o1: #c9302c; --o2: #f08a7a; --o3: #e3a82b; --o4: #7d4fb5; --o5: #9aa5b1;
+  --o0: #2f9e5b; --o1: #c9302c; --o2: #f08a7a; --o3: #e3a82b; --o4: #7d4fb5; --o5: #9aa5b1; --o6: #2a7fb8;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --page: #0f141a; --panel: #182029; --line: #2a3541; --text: #e8eef5; --soft: #93a3b3; --accent: #5aa9ff;
     --stripe: #1b242e; --box: #2a4466; --good: #4ec27f; --bad: #ff7a72;
-    --o0: #37a566; --o1: #d9483f; --o2: #b5665c; --o3: #c9952a; --o4: #9168c9; --o5: #64717e;
+    --o0: #37a566; --o1: #d9483f; --o2: #b5665c; --o3: #c9952a; --o4: #9168c9; --o5: #64717e; --o6: #4a9ad0;
   }
 }
 * { box-sizing: border-box; }
@@ -75,6 +75,7 @@ label { display: inline-flex; align-items: center; gap: 6px; cursor: pointer; }
 #runs tbody tr:hover { background: color-mix(in srgb, var(--accent) 12%, transparent); }
 #runs td { max-width: 320px; overflow: hidden; text-overflow: ellipsis; }
 #runs .more td { white-space: normal; text-align: left; cursor: auto; font-weight: 400; max-width: none; }
+.violation { display: block; font-size: 12px; overflow: hidden; text-overflow: ellipsis; }
 [hidden] { display: none !important; }
 )css";
 
@@ -95,7 +96,7 @@ failure, its state before the end: open it with examples/run debug_snapshot.</p>
 
 inline constexpr std::string_view report_script = R"js(
 const data = JSON.parse(document.getElementById('data').textContent), $ = (id) => document.getElementById(id);
-const {groups, columns, outcomes, rows, errors} = data, page = 100;
+const {groups, columns, outcomes, rows, errors, violations} = data, page = 100;
 const head = ['set', 'scenario', 'behaviour', 'outcome', ...columns];
 const first = 3;                                   // of the numbers in a row: group, scenario, outcome, ...
 const cell = (row, c) => c === 0 ? groups[row[0]].set : c === 1 ? row[1] : c === 2 ? groups[row[0]].label
@@ -127,11 +128,18 @@ const hasReplay = new Set(data.made), hasSnapshot = new Set(data.frozen);
 const quoted = (word) => /^[\w:.\/-]+$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
 const command = (row) => groups[row[0]].command + (groups[row[0]].source ? ' ' + groups[row[0]].source : '') + ' --only ' + quoted(groups[row[0]].title + ':' + row[1] + ':' +
     groups[row[0]].behavior) + ' --replay ' + quoted(data.folder + '/' + file(row, '.html'));
+const violated = (row) => (violations[row.index] || []).map(([frame, text]) => {
+  const item = make(hasReplay.has(row.index) ? 'a' : 'span', text.replaceAll('_', ' '), 'violation');
+  if (hasReplay.has(row.index)) item.href = link(row, '.html') + '#frame=' + frame;
+  item.onclick = (event) => event.stopPropagation();
+  return item;
+});
 const explain = (line, row) => {
   if (line.nextSibling && line.nextSibling.className === 'more') { line.nextSibling.remove(); return; }
   const more = make('tr', undefined, 'more'), box = make('td');
   box.colSpan = head.length;
   if (errors[row.index]) box.append(make('p', errors[row.index]));
+  if (violations[row.index]) box.append(...violated(row));
   box.append(make('p', 'seed ' + data.seeds[row.index] + (data.hits[row.index] ? ', hit agent ' +
       data.hits[row.index] : '') + '. This makes the replay:', 'soft'), make('code', command(row)));
   const copy = make('button', 'copy');
@@ -155,6 +163,7 @@ const draw = () => {
         mark.style.background = 'var(--o' + value + ')';
         td.append(mark, outcomes[value]);
         if (errors[row.index]) td.title = errors[row.index];
+        td.append(...violated(row).slice(0, 2));
       } else if (c === 1 && hasReplay.has(row.index)) {
         const anchor = make('a', '▶ ' + value);
         anchor.href = link(row, '.html');
@@ -188,7 +197,7 @@ const update = () => {
     return is('set', group.set) && is('behavior', group.label) && is('outcome', outcomes[row[2]]) &&
         (!$('split').checked || succeeds.get(group.hash + ' ' + row[1]) === 3) &&
         (!text || String(row[1]) === text || (group.set + ' ' + group.label + ' ' + outcomes[row[2]] + ' ' +
-            (errors[row.index] || '')).toLowerCase().includes(text));
+            (errors[row.index] || '') + (violations[row.index] || []).map((item) => item[1]).join(' ').replaceAll('_', ' ')).toLowerCase().includes(text));
   });
   const sign = down ? -1 : 1;
   found.sort((a, b) => {

@@ -1,0 +1,280 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cambium/behavior/view.hpp"
+#include "cambium/benchmark/run_result.hpp"
+#include "cambium/core/constants.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/core/one_of.hpp"
+#include "cambium/core/portable_math.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/driving.hpp"
+#include "cambium/evaluation/encounter.hpp"
+#include "cambium/evaluation/infeasible.hpp"
+#include "cambium/evaluation/metrics/closed_loop_score.hpp"
+#include "cambium/evaluation/metrics/over_time.hpp"
+#include "cambium/evaluation/metrics/post_encroachment_time.hpp"
+#include "cambium/evaluation/metrics/rss_compliance.hpp"
+#include "cambium/evaluation/off_road.hpp"
+#include "cambium/evaluation/rules/agent_labels.hpp"
+#include "cambium/evaluation/rules/imposed_braking.hpp"
+#include "cambium/evaluation/rules/junction_labels.hpp"
+#include "cambium/evaluation/rules/label.hpp"
+#include "cambium/evaluation/rules/rule_monitor.hpp"
+#include "cambium/evaluation/rules/rule_sets.hpp"
+#include "cambium/scenario/scenario_set.hpp"
+#include "cambium/world/frame.hpp"
+
+namespace cambium::detail {
+
+/// A rule that every run is judged by, and the field of the result that says whether it was broken.
+struct RunRule {
+  using Labels = OneOf<PassesSignal, SignalAhead, Exceeds<Progress>, MustGiveWay, InConflict, OncomingLane,
+                       Exceeds<SpeedLimitExcess>, CrossesSolidLine>;
+
+  char const* name;  ///< of the field
+  bool RunResult::*is_broken;
+  double least;  ///< shorter violations do not count [s]
+  RuleMonitor<Labels> monitor;
+};
+
+/// All of them, before a run.
+[[nodiscard]] inline std::vector<RunRule> const& run_rules() {
+  static std::vector<RunRule> const all = [] {
+    constexpr std::size_t others = 16, violations = 16;
+    constexpr double passing = 1.0;  // [s] no ride against traffic, but the way around something
+    auto rules = intersection_rules<RunRule::Labels>();
+    for (auto& rule : road_rules<RunRule::Labels>()) rules.push_back(std::move(rule));
+    std::vector<RunRule> list;
+    auto const add = [&](std::string_view rule, char const* name, bool RunResult::*field, double least = 0.0) {
+      auto const at = std::ranges::find(rules, rule, &TrafficRule<RunRule::Labels>::name);
+      list.push_back({name, field, least, RuleMonitor<RunRule::Labels>(*at, others, violations)});
+    };
+    add("red_light", "red_light", &RunResult::red_light);
+    add("stop_sign", "stop_sign", &RunResult::stop_sign);
+    add("give_way", "right_of_way", &RunResult::right_of_way);
+    add("wrong_way", "wrong_way", &RunResult::wrong_way, passing);
+    add("speed_limit", "speeding", &RunResult::speeding);
+    add("solid_line", "solid_line", &RunResult::solid_line);
+    return list;
+  }();
+  return all;
+}
+
+/// Whether a run did what a criterion is about.
+[[nodiscard]] inline bool meets(RunResult const& result, Criterion criterion) {
+  constexpr double hard = 4.0, long_time = 10.0;  // [m/s^2], [s]
+  if (criterion == Criterion::imposed_braking) return result.imposed_braking > hard;
+  if (criterion == Criterion::straddling) return result.straddling_s > long_time;
+  using R = RunResult;
+  constexpr bool R::*fields[] = {&R::infeasible, &R::red_light, &R::stop_sign,  &R::right_of_way,
+                                 &R::wrong_way,  &R::speeding,  &R::solid_line, &R::off_road};
+  return result.*fields[static_cast<std::size_t>(criterion)];
+}
+
+/// The absolute value of evaluator `E`.
+template <class E>
+struct SizeOf {
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    return std::abs(E{}(world, slot));
+  }
+};
+
+/// Judges a run of the agents `own`, of which the first is the ego: its metrics, and what it does that no vehicle can
+/// do or that the rules forbid. All of `own` are asked whether their motions are possible.
+template <class World>
+class RunJudge {
+ public:
+  RunJudge(World& world, std::span<AgentId const> own)
+      : own_(own.begin(), own.end()), ego_(world.slot_of(own.front())) {
+    observe(world, 0.0);
+  }
+
+  void observe(World& world, double dt) {
+    std::apply([&](auto&... metric) { (metric.recorder.observe(world, ego_, dt), ...); }, metrics_);
+    for (auto& rule : rules_) rule.monitor(world, ego_);
+    for (auto const agent : own_) ask_whether_possible(world, agent);
+    result_.off_road = result_.off_road || OffRoad{}(world, ego_);
+    result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
+    if (auto const contact = Collision{}.contact(world, ego_)) {
+      note_collision(world, contact->agent);
+      result_.at_fault = AtFaultCollision{}(world, ego_);
+    }
+    auto const pair = AnyCollision{}.pair(world);
+    bool const others = pair && pair->first != own_.front() && pair->second != own_.front();
+    if (pair && !result_.collision) note_drive_through(world);
+    result_.others_collided += others && !others_collide_;
+    others_collide_ = others;
+  }
+
+  [[nodiscard]] RunResult& result() { return result_; }
+
+  /// The result of a run that has ended, in which what `fails` names is no success.
+  [[nodiscard]] RunResult finished(World const& world, std::span<Criterion const> fails) {
+    result_.steps = static_cast<std::int64_t>(world.frame().step);
+    result_.duration_s = world.time();
+    std::apply([&](auto const&... metric) { (metric.write(result_), ...); }, metrics_);
+    add_violations();
+    for (auto const criterion : fails)
+      if (meets(result_, criterion)) result_.success = false;
+    if (!result_.success) result_.closed_loop_score = 0.0;  // it made no progress in nuPlan's sense
+    return result_;
+  }
+
+ private:
+  void ask_whether_possible(World const& world, AgentId agent) {
+    auto const finding = Infeasible{}.finding(world, world.slot_of(agent));
+    if (finding.flaw == Infeasible::Flaw::none) return;
+    result_.infeasible = true;
+    ++result_.infeasible_steps;
+    if (finding.excess() <= worst_.finding.excess()) return;
+    worst_ = {world.time(), agent, finding};
+  }
+
+  /// `other`: none for an object.
+  void note_collision(World const& world, AgentId other) {
+    if (!result_.collision) {
+      auto const velocity = [&](Slot slot) {
+        auto const& state = world.frame().agents[slot].state;
+        auto const along = portable::sin_cos(state.heading);
+        return std::pair(state.speed * along.cos, state.speed * along.sin);
+      };
+      auto [x, y] = velocity(ego_);
+      if (is_valid(other)) {
+        auto const its = velocity(world.slot_of(other));
+        x -= its.first;
+        y -= its.second;
+      }
+      result_.impact_speed = portable::hypot(x, y);
+    }
+    result_.collision = true;
+    result_.hit = other;
+  }
+
+  /// A collision between two frames counts, too. Nobody is at fault: how they met is not known.
+  void note_drive_through(World const& world) {
+    if (!in_traffic(world, ego_)) return;
+    auto const own = motion_at(world, ego_);
+    for (Slot slot{}; index_of(slot) < world.size() && !result_.collision; ++slot) {
+      if (slot == ego_ || !in_traffic(world, slot) || !geometry::intersects(own, motion_at(world, slot))) continue;
+      note_collision(world, world.roster().agents[slot].id);
+    }
+  }
+
+  /// Writes what was violated, in the order of time: "3.4 s red_light; 5 s wrong_way until 7.2 s".
+  void add_violations() {
+    struct Item {
+      double time;
+      std::string text;
+    };
+    std::vector<Item> items;
+    auto const seconds = [](double time) { return rounded_text(time) + " s"; };
+    for (auto& rule : rules_) {
+      rule.monitor.finish();
+      for (auto const& violation : rule.monitor.violations()) {
+        if (violation.end - violation.begin < rule.least - same_time) continue;
+        result_.*rule.is_broken = true;
+        auto text = std::string(rule.name);
+        if (is_valid(violation.other)) text += " to agent " + to_string(violation.other);
+        if (violation.end > violation.begin) text += " until " + seconds(violation.end);
+        items.push_back({violation.begin, std::move(text)});
+      }
+    }
+    if (result_.infeasible) {
+      auto text = "infeasible: agent " + to_string(worst_.agent) + " " + to_string(worst_.finding);
+      if (result_.infeasible_steps > 1) text += ", the worst of " + std::to_string(result_.infeasible_steps) + " steps";
+      items.push_back({worst_.time, std::move(text)});
+    }
+    std::ranges::stable_sort(items, {}, &Item::time);
+    for (auto const& item : items)
+      result_.violations += (result_.violations.empty() ? "" : "; ") + seconds(item.time) + " " + item.text;
+  }
+
+  struct Worst {
+    double time = 0.0;
+    AgentId agent = none<AgentId>;
+    Infeasible::Finding finding{};
+  };
+
+  struct Speed {
+    [[nodiscard]] double operator()(World const& world, Slot slot) const {
+      return world.frame().agents[slot].state.speed;
+    }
+  };
+  struct Braking {
+    [[nodiscard]] double operator()(World const& world, Slot slot) const { return -Acceleration{}(world, slot); }
+  };
+  /// Of those that are in its lane already; infinite where nobody is ahead.
+  struct GapAhead {
+    [[nodiscard]] double operator()(World& world, Slot slot) const {
+      auto const next = world.truth(slot).ahead({.merging = Merging::ignored});
+      return next ? next->gap : std::numeric_limits<double>::infinity();
+    }
+  };
+  /// Of a run in which another road user or an object was there.
+  template <class E, Fold fold>
+  struct WithOthers : Over<E, fold> {
+    bool has_others = false;
+
+    void observe(World& world, Slot slot, double dt) {
+      has_others = has_others || !world.roster().objects.empty();
+      for (Slot other{}; index_of(other) < world.size() && !has_others; ++other)
+        has_others = other != slot && in_traffic(world, other);
+      Over<E, fold>::observe(world, slot, dt);
+    }
+    [[nodiscard]] double value() const {
+      return has_others ? Over<E, fold>::value() : std::numeric_limits<double>::quiet_NaN();
+    }
+  };
+  /// Writes a recorder's value into a field of the result; a size is at least 0.
+  template <auto field, class Recorder, bool is_size = false>
+  struct Metric {
+    Recorder recorder{};
+
+    void write(RunResult& result) const {
+      auto value = recorder.value();
+      if constexpr (is_size) value = std::max(0.0, value);
+      if (std::isinf(value)) value = std::numeric_limits<double>::quiet_NaN();  // there was none
+      result.*field = static_cast<std::remove_reference_t<decltype(result.*field)>>(value);
+    }
+  };
+  template <auto field, class Recorder>
+  using NonNegative = Metric<field, Recorder, true>;
+  using R = RunResult;
+  using Metrics =
+      std::tuple<Metric<&R::progress_m, Integral<Progress>>, NonNegative<&R::mean_speed, MeanOf<Speed>>,
+                 Metric<&R::least_gap, Least<GapAhead>>,
+                 Metric<&R::least_time_to_collision, WithOthers<TimeToCollision, Fold::least>>,
+                 Metric<&R::post_encroachment_time, PostEncroachmentTime>,
+                 NonNegative<&R::required_deceleration, Most<RequiredDeceleration>>,
+                 Metric<&R::least_clearance, WithOthers<Clearance, Fold::least>>,
+                 Metric<&R::imposed_braking, ImposedBraking>, Metric<&R::straddling_s, LongestTime<Straddles>>,
+                 NonNegative<&R::hardest_braking, Most<Braking>>, NonNegative<&R::largest_jerk, Most<SizeOf<Jerk>>>,
+                 NonNegative<&R::largest_lateral_acceleration, Most<SizeOf<LateralAcceleration>>>,
+                 Metric<&R::hard_brakings, Times<HardBraking>>, Metric<&R::rss_compliance, RssCompliance>,
+                 Metric<&R::closed_loop_score, ClosedLoopScore>>;
+
+  std::vector<AgentId> own_;
+  Slot ego_;
+  RunResult result_;
+  bool others_collide_ = false;
+  Worst worst_{};
+  std::vector<RunRule> rules_ = run_rules();
+  Metrics metrics_{};
+};
+
+}  // namespace cambium::detail

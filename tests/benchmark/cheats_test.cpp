@@ -1,0 +1,290 @@
+// Drivers that game a judge: each gets its failure, and its row says why.
+#include <cambium/benchmark/contender.hpp>
+#include <cambium/cambium.hpp>
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../support/maps.hpp"
+#include "../support/merging_set.hpp"
+#include "cheats/cheat.hpp"
+
+using namespace cambium;
+using cheats::Cheat;
+using Kind = Cheat::Kind;
+
+namespace {
+
+using Traffic = World<BehaviorSet<IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+
+/// Another vehicle of a scenario.
+struct Other {
+  double x, y, speed;
+  Traffic::Behavior behavior = ConstantAcceleration{};
+};
+
+/// The ego drives at `speed` from x = 30 to 400 m of a straight road.
+Scenario<Traffic> scene(double speed, std::vector<Other> const& others, std::shared_ptr<Map const> const& map) {
+  Scenario<Traffic> scenario{.map = map, .ego = AgentId{0}};
+  auto const lane = map->lanes().front().id;
+  scenario.agents.push_back({.position = {30, -1.75},
+                             .speed = speed,
+                             .behavior = IdmClassic{},
+                             .goal = ReachLane{lane, 400.0, 490.0},
+                             .id = AgentId{0}});
+  for (auto const& other : others)
+    scenario.agents.push_back({.position = {other.x, other.y},
+                               .speed = other.speed,
+                               .behavior = other.behavior,
+                               .id = static_cast<AgentId>(scenario.agents.size())});
+  return scenario;
+}
+Scenario<Traffic> scene(double speed, std::vector<Other> const& others = {}) {
+  return scene(speed, others, support::straight_road(2, 500));
+}
+
+RunResult judged(Kind kind, Scenario<Traffic> const& scenario, RunOptions const& options = {}) {
+  return contender<Traffic>(Cheat{kind}).run(scenario, options, false).result;
+}
+
+bool says(RunResult const& result, std::string const& what) {
+  INFO(result.violations);
+  return result.violations.find(what) != std::string::npos;
+}
+
+double const length = geometry::car().length();
+
+}  // namespace
+
+TEST_CASE("an honest driver succeeds, alone, behind a slower one and where that one stops") {
+  for (auto const& scenario : {scene(20), scene(20, {{80, -1.75, 12}}),
+                               scene(20, {{100, -1.75, 15, IdmClassic{.law = {.desired_speed = 5}}}})}) {
+    auto const result = judged(Kind::honest, scenario, {.time_limit = 90});
+    CHECK(result.success);
+    CHECK(result.violations == "");
+    CHECK(result.infeasible_steps == 0);
+    CHECK(std::isnan(result.impact_speed));
+  }
+}
+
+TEST_CASE("what plans claim changes nothing") {
+  for (auto const& scenario : {scene(20, {{80, -1.75, 12}, {10, -1.75, 18, IdmClassic{}}}),
+                               scene(5, {{60, -1.75, 15, IdmClassic{.law = {.desired_speed = 5}}}})})
+    for (double const step : {0.1, 0.2}) {
+      RunOptions const options{.time_step = step};
+      CHECK(to_string(judged(Kind::two_faced, scenario, options)) ==
+            to_string(judged(Kind::honest, scenario, options)));
+    }
+}
+
+TEST_CASE("who does not move has no success") {
+  auto const result = judged(Kind::statue, scene(20));
+  CHECK_FALSE(result.success);
+  CHECK(result.timed_out);
+  CHECK(result.progress_m < 60.0);
+  CHECK(result.closed_loop_score == 0.0);
+}
+
+TEST_CASE("who stands still just before the impact has made a motion that no vehicle can make") {
+  auto const result = judged(Kind::flincher, scene(20, {{150, -1.75, 0}}));
+  CHECK_FALSE(result.success);
+  CHECK(result.infeasible_steps == 1);
+  CHECK(says(result, "infeasible: agent 0 changes its speed by -100 m/s^2, possible are -8"));
+}
+
+TEST_CASE("the first touch ends a run, and the impact is on record beside the fault") {
+  auto const result = judged(Kind::bumper, scene(12.6, {{30 + length + 2, -1.75, 12}}));
+  CHECK_FALSE(result.success);
+  CHECK(result.collision);
+  CHECK(result.at_fault);
+  CHECK(result.hit == AgentId{1});
+  CHECK(result.impact_speed == doctest::Approx(0.6));
+  CHECK(result.duration_s < 5.0);
+  auto const struck = judged(Kind::statue, scene(12, {{10, -1.75, 20}}));  // not to blame, yet a crash
+  CHECK(struck.collision);
+  CHECK_FALSE(struck.at_fault);
+  CHECK_FALSE(struck.success);
+  CHECK(struck.impact_speed > 8.0);
+}
+
+TEST_CASE("places that run ahead of the speed are no motion of a vehicle") {
+  auto const result = judged(Kind::teleporter, scene(20));
+  CHECK_FALSE(result.success);
+  CHECK(result.infeasible_steps == result.steps);
+  CHECK(says(result, "infeasible: agent 0 moves 12 m in a step, possible are 4.1"));
+}
+
+TEST_CASE("accelerations are those that were driven, not those that were claimed") {
+  auto const result = judged(Kind::liar, scene(22));
+  CHECK_FALSE(result.success);
+  CHECK(result.infeasible);
+  CHECK(result.hardest_braking == doctest::Approx(40.0));
+  CHECK(result.largest_jerk == doctest::Approx(400.0));
+  CHECK(result.hard_brakings > 20);
+}
+
+TEST_CASE("a braking of one step is on record, raw") {
+  auto const calm = judged(Kind::honest, scene(20)), result = judged(Kind::blinker, scene(20));
+  CHECK_FALSE(result.infeasible);  // it is rough, but possible
+  CHECK(result.hard_brakings >= 5);
+  CHECK(result.hardest_braking == doctest::Approx(7.0));
+  CHECK(result.largest_jerk > 35.0);
+  CHECK(calm.largest_jerk < 4.0);
+  CHECK(result.closed_loop_score <= calm.closed_loop_score - 2.0 / 16.0);
+}
+
+TEST_CASE("vehicles do not go sideways") {
+  auto const result = judged(Kind::crab, scene(20, {{150, -1.75, 0}}));
+  CHECK_FALSE(result.success);
+  CHECK(says(result, "infeasible: agent 0 moves sideways by -0.5 m in a step"));
+}
+
+TEST_CASE("who crosses another vehicle between two frames has hit it") {
+  double const before = 30.0 + 12.0 * 7;
+  auto const result = judged(Kind::bullet, scene(60, {{before + 6.0 + 0.5 * (12.0 - length) - 4.0, -1.75, 0}}));
+  CHECK_FALSE(result.success);
+  CHECK(result.collision);
+  CHECK(result.impact_speed == doctest::Approx(60.0));
+}
+
+TEST_CASE("a red light makes a run no success, unless its set chooses otherwise") {
+  auto scenario = scene(20, {}, support::road_with_signal("1000001"));
+  scenario.lights = {{.cycle = 100, .green_begin = 90, .green_end = 100}};
+  auto result = judged(Kind::bullet, scenario);
+  CHECK_FALSE(result.success);
+  CHECK(result.red_light);
+  CHECK(says(result, "s red_light"));
+  auto const moments = violations_of(result);
+  REQUIRE(moments.size() == 1);
+  CHECK(moments.front().text == "red_light");
+  CHECK(moments.front().time == doctest::Approx(170.0 / 20.0).epsilon(0.05));
+  CHECK(judged(Kind::bullet, scenario, {.fails = {}}).success);
+  scenario.lights = {{.cycle = 100, .green_begin = 0, .green_end = 50}};
+  CHECK(judged(Kind::bullet, scenario).success);
+}
+
+TEST_CASE("what others had to brake because of the ego is on record, and a criterion for sets that choose it") {
+  auto const follower = IdmClassic{.law = {.desired_speed = 25}};
+  auto const checked = scene(20, {{10, -1.75, 20, follower}});
+  RunOptions const options{.fails = {Criterion::imposed_braking}};
+  auto const result = judged(Kind::brake_checker, checked, options);
+  CHECK(result.imposed_braking > 4.0);
+  CHECK_FALSE(result.success);
+  CHECK(judged(Kind::honest, checked, options).success);
+  CHECK(judged(Kind::honest, checked, options).imposed_braking == 0.0);
+
+  auto cuts = scene(12, {{15, -1.75, 20, follower}});
+  cuts.agents.front().position = {60, -5.25};
+  cuts.agents.front().heading = 0.08;
+  CHECK(judged(Kind::bullet, cuts, {.time_limit = 5}).imposed_braking > 2.0);
+  cuts.agents.front().heading = 0.0;
+  CHECK(judged(Kind::bullet, cuts, {.time_limit = 5}).imposed_braking == 0.0);
+  // Whoever brakes behind a leader that brakes for another one is asked to.
+  auto const queue = scene(20, {{10, -1.75, 20, follower}, {70, -1.75, 18, ConstantAcceleration{-3.0}}});
+  CHECK(judged(Kind::honest, queue).imposed_braking == 0.0);
+}
+
+TEST_CASE("who stays between two lanes is on record, and fails where the set chooses so") {
+  auto between = scene(20);
+  between.agents.front().position = {30, -3.2};
+  RunOptions const options{.fails = {Criterion::straddling}};
+  auto const result = judged(Kind::bullet, between, options);
+  CHECK(result.straddling_s > 15.0);
+  CHECK_FALSE(result.success);
+  CHECK(judged(Kind::bullet, scene(20), options).straddling_s == 0.0);
+  CHECK(judged(Kind::bullet, scene(20), options).success);
+}
+
+TEST_CASE("a ride against traffic makes a run no success") {
+  auto const map = support::two_way_road(500);
+  auto const own = std::ranges::find_if(map->lanes(), [](auto const& lane) { return lane.number < 0; });
+  REQUIRE(own != map->lanes().end());
+  auto scenario = scene(20, {}, map);
+  scenario.agents.front().goal = ReachLane{own->id, 400.0, 490.0};
+  CHECK(judged(Kind::bullet, scenario).success);
+  scenario.agents.front().position = {30, -1.0};
+  scenario.agents.front().heading = 0.008;
+  scenario.agents.front().goal = NoGoal{};
+  auto const result = judged(Kind::bullet, scenario);
+  INFO(to_string(result));
+  CHECK(result.wrong_way);
+  CHECK_FALSE(result.success);
+  CHECK(says(result, "s wrong_way until "));
+}
+
+TEST_CASE("who drives to the letter of the score loses by hidden bounds, who drives well does not") {
+  using Own = Traffic::WithBehaviors<BehaviorSet<Cheat>>;
+  auto const score = [](Kind kind, double share_of_bounds) {
+    Own world(support::straight_road(1, 500));
+    world.add({.position = {30, -1.75}, .speed = 20, .behavior = Cheat{kind}});
+    world.keep_history(1);
+    ClosedLoopScore metric;
+    for (double ClosedLoopScore::*bound :
+         {&ClosedLoopScore::acceleration, &ClosedLoopScore::deceleration, &ClosedLoopScore::jerk})
+      metric.*bound *= share_of_bounds;
+    for (int i = 0; i < 100; ++i) {
+      REQUIRE(world.step(0.1));
+      metric.observe(world, Slot{0}, 0.1);
+    }
+    return metric.value();
+  };
+  CHECK(score(Kind::judges_twin, 1.0) == 1.0);
+  CHECK(score(Kind::judges_twin, 0.9) == doctest::Approx(14.0 / 16.0));
+  CHECK(score(Kind::honest, 0.9) == 1.0);
+}
+
+TEST_CASE("who has learnt the futures of some seeds by heart gains nothing on fresh ones") {
+  auto set = support::merging_set<Traffic>(8);
+  for (std::size_t i = 0; i < set.scenarios.size(); ++i) set.scenarios[i].seed = 100 + i;
+  auto const honest = contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}});
+  std::map<std::uint64_t, StaticTrajectory> known;  // by seed
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto const& scenario = set.scenarios[i];
+    auto const run = honest.run(scenario, {}, true);
+    REQUIRE(run.recording);
+    auto const& agents = run.recording->agents;
+    auto const ego =
+        static_cast<std::size_t>(std::ranges::find(agents, scenario.ego, &RecordedAgent::id) - agents.begin());
+    std::vector<State> states;
+    for (auto const& frame : run.recording->frames) {
+      auto const& pose = frame.poses[ego];
+      states.push_back({frame.time, pose.x, pose.y, pose.heading, pose.speed});
+    }
+    known.emplace(scenario.seed, StaticTrajectory(std::move(states)));
+  }
+  auto const oracle = contender_by<Traffic>("oracle", "", 0, [&](auto const&, auto const& scenario) {
+    auto const at = known.find(scenario.seed);
+    return at != known.end() ? at->second : known.begin()->second;
+  });
+  std::size_t at_home = 0, elsewhere = 0, honestly = 0;
+  for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
+    bool const succeeds = oracle.run(set.scenarios[i], {}, false).result.success;
+    (i < 4 ? at_home : elsewhere) += succeeds;
+    honestly += i >= 4 && honest.run(set.scenarios[i], {}, false).result.success;
+  }
+  CHECK(at_home == 4);
+  CHECK(honestly == 4);
+  CHECK(elsewhere == 0);
+}
+
+TEST_CASE("a criterion that the map cannot answer fails the run with a sentence") {
+  auto const result = judged(Kind::honest, scene(20), {.fails = {Criterion::speeding}});
+  CHECK_FALSE(result.success);
+  CHECK(result.error ==
+        "the set: fails runs by \"speeding\", but no lane of the map has a speed limit; leave it out of \"fails\", or "
+        "give the map limits");
+}
+
+TEST_CASE("a plan that is no number is an error that says so") {
+  auto const result = judged(Kind::odd, scene(20));
+  CHECK_FALSE(result.success);
+  CHECK(result.error.find("agent 0 (the ego)") == 0);
+  CHECK(result.error.find("finite") != std::string::npos);
+}
