@@ -45,14 +45,6 @@ void keep_common(JsonValue& value, JsonValue const& other) {
   });
 }
 
-/// Whether a key like this is in a document, at any depth.
-bool has_key(JsonValue const& value, std::string const& key) {
-  auto const* const members = value.members();
-  return members != nullptr && std::ranges::any_of(*members, [&](JsonValue::Member const& member) {
-           return member.first == key || has_key(member.second, key);
-         });
-}
-
 }  // namespace
 
 struct ParameterFile::Content {
@@ -93,10 +85,6 @@ bool ParameterFile::has(std::string const& name) const {
   if (!content_ || std::find(content_->known.begin(), content_->known.end(), name) == content_->known.end())
     throw std::logic_error("parameters " + name + ": declare them by allow() or take() first");
   return find(content_->said, name) != nullptr;
-}
-
-bool ParameterFile::gives(std::string const& name, std::string const& key) const {
-  return has(name) && has_key(*find(content_->said, name), key);
 }
 
 void ParameterFile::read(std::string const& name, cambium::TypeInfo const& type, void* object) const {

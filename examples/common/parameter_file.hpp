@@ -55,9 +55,6 @@ class ParameterFile {
     if (prints_) show_values(name, cambium::type_info<T>(), &object);
   }
 
-  /// Whether the file has a key like this in the member `name`, at any depth. The member must be declared.
-  [[nodiscard]] bool gives(std::string const& name, std::string const& key) const;
-
   /// The file; empty if none was given.
   [[nodiscard]] std::string const& path() const { return path_; }
 

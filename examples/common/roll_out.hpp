@@ -57,7 +57,7 @@ void append_rows(std::string& rows, std::uint64_t scenario, World const& world, 
                                                 : cambium::none<cambium::LaneId>;
     append_row(rows, map,
                {scenario, world.time(), agent.id, r.state.x, r.state.y, r.state.heading, r.state.speed,
-                r.action.acceleration, agent.shape, is_valid(lane) ? &map.lane(lane) : nullptr,
+                double{r.acceleration}, agent.shape, is_valid(lane) ? &map.lane(lane) : nullptr,
                 std::visit([](auto const& behavior) { return behavior.name; }, agent.behavior), agent.id == ego});
   }
 }

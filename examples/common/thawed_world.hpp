@@ -145,7 +145,7 @@ class ThawedWorld final : public Thawed {
             record.state.x,
             record.state.y,
             record.state.speed,
-            record.action.acceleration};
+            double{record.acceleration}};
   }
 
   World world_;

@@ -152,6 +152,21 @@ TEST_CASE("who crosses another vehicle between two frames has hit it") {
   CHECK_FALSE(result.success);
   CHECK(result.collision);
   CHECK(result.impact_speed == doctest::Approx(60.0));
+  CHECK(result.at_fault);  // the other stood
+  auto walled = scene(60);
+  walled.objects = {
+      geometry::Polygon({{before + 9.0, -3.0}, {before + 9.4, -3.0}, {before + 9.4, -0.5}, {before + 9.0, -0.5}})};
+  auto const through = judged(Kind::bullet, walled);
+  CHECK(through.collision);
+  CHECK(through.at_fault);
+  CHECK_FALSE(through.success);
+}
+
+TEST_CASE("who vanishes where something is in the way has failed") {
+  auto const result = judged(Kind::ghost, scene(20, {{150, -1.75, 0}}));
+  CHECK_FALSE(result.success);
+  CHECK(result.error == "agent 0: its plan says that it has not started, but it drives");
+  CHECK_FALSE(result.collision);
 }
 
 TEST_CASE("a red light makes a run no success, unless its set chooses otherwise") {

@@ -90,7 +90,8 @@ TEST_CASE("a motion is possible or not, whichever way the vehicle heads and wher
       {5, {.x = 1, .heading = 0.1, .speed = 5}, 0.2, Flaw::none},
       {20, {.x = along * std::cos(0.1), .y = along * std::sin(0.1), .heading = 0.2, .speed = 20}, 0.2, Flaw::grip},
       {20, {.x = 4, .y = 0.16, .heading = 0.08, .speed = 20}, 0.2, Flaw::none},
-      {20, {.x = 3.85, .y = 0.173, .heading = 0.09, .speed = 18.5}, 0.2, Flaw::grip},  // it brakes, too
+      {20, {.x = 3.85, .y = 0.173, .heading = 0.09, .speed = 18.5}, 0.2, Flaw::none},   // as its dynamics permits
+      {20, {.x = 3.84, .y = 0.201, .heading = 0.105, .speed = 18.5}, 0.2, Flaw::grip},  // it brakes, too
   };
   for (auto const& motion : motions)
     for (double const turn : {0.0, 0.7, -2.9, 3.1})

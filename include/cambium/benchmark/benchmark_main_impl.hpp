@@ -333,7 +333,9 @@ extern "C" inline void say_how_to_go_on(int signal) {
   std::raise(signal);
 }
 
-CAMBIUM_COLD SaysHowToGoOn::SaysHowToGoOn() : before_(std::signal(SIGINT, &say_how_to_go_on)) {}
+CAMBIUM_COLD SaysHowToGoOn::SaysHowToGoOn() : before_(std::signal(SIGINT, &say_how_to_go_on)) {
+  if (before_ == SIG_IGN) std::signal(SIGINT, SIG_IGN);
+}
 CAMBIUM_COLD SaysHowToGoOn::~SaysHowToGoOn() { std::signal(SIGINT, before_); }
 
 CAMBIUM_COLD void write_replay(std::filesystem::path const& replay, Run run) {

@@ -61,8 +61,12 @@ void for_each_common(ResultGroup const& a, ResultGroup const& b, F const& f) {
   auto const outcome = outcome_of(result);
   auto const violations = violations_of(result);
   if (std::string(run_outcomes[outcome]) != "violation" || violations.empty()) return run_outcomes[outcome];
-  return violations.front().text.substr(0, violations.front().text.find_first_of(" :")) + " at " +
-         rounded_text(violations.front().time) + " s";
+  auto const is_usual = [](RunViolation const& one) {  // what fails a run unless its set chooses otherwise
+    return one.text.starts_with("infeasible") || one.text.starts_with("red_light") || one.text.starts_with("wrong_way");
+  };
+  auto const usual = std::ranges::find_if(violations, is_usual);
+  auto const& why = usual != violations.end() ? *usual : violations.front();
+  return why.text.substr(0, why.text.find_first_of(" :")) + " at " + rounded_text(why.time) + " s";
 }
 
 /// A change without p value and interval; `differences` receives those of its pairs.

@@ -187,6 +187,19 @@ class LastWorlds {
   std::deque<World> worlds_{};
 };
 
+/// Which agent of `own` drove before the last step and has not started after it, so that nobody sees it; empty if none.
+template <class World>
+[[nodiscard]] std::string vanished(World const& world, std::span<AgentId const> own) {
+  auto const* const before = world.before_step();
+  for (auto const id : own) {
+    auto const slot = world.slot_of(id);
+    if (before != nullptr && (*before)[slot].status == AgentStatus::driving &&
+        world.frame().agents[slot].status == AgentStatus::not_started)
+      return "agent " + to_string(id) + ": its plan says that it has not started, but it drives";
+  }
+  return {};
+}
+
 /// Why a run cannot go on after a step with a problem: the behaviour under test, which drives `own` (the ego first),
 /// has failed. Empty if only others have failed.
 template <class World>
@@ -226,7 +239,7 @@ template <class World, class AfterStep>
   while (!is_over) {
     auto const step = world.step(options.time_step);
     auto const status = world.frame().agents[slot].status;
-    if (!step) result.error = failure_of(world, step, own);
+    result.error = step ? vanished(world, own) : failure_of(world, step, own);
     if (result.error.empty()) result.others_failed += step.failed;
     judge.observe(world, options.time_step);
     after_step(world, result);

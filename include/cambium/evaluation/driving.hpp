@@ -214,7 +214,7 @@ struct LateralAcceleration {
 
   template <class World>
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
-    if (world.history_size() == 0) return 0.0;
+    if (world.history_size() == 0 || world.history(1).agents[slot].status != AgentStatus::driving) return 0.0;
     return between(world.history(1).agents[slot].state, world.frame().agents[slot].state);
   }
 
@@ -227,7 +227,7 @@ struct LateralAcceleration {
 };
 
 /// The change of the agent's acceleration since the previous step [m/s^3]. Needs a world that keeps a history; 0
-/// without one, and in the first step of a world, before which nobody drove.
+/// without one, and in the first step of a world or of the agent, before which it did not drive.
 struct Jerk {
   static constexpr bool needs_history = true;
   static constexpr char const* name = "jerk";
@@ -238,6 +238,7 @@ struct Jerk {
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
     if (world.history_size() == 0 || world.history(1).step == 0) return 0.0;
     auto const &now = world.frame().agents[slot], &before = world.history(1).agents[slot];
+    if (before.status != AgentStatus::driving) return 0.0;
     double const dt = now.state.time - before.state.time;
     return dt > 0.0 ? (Acceleration{}(world, slot) - static_cast<double>(before.acceleration)) / dt : 0.0;
   }

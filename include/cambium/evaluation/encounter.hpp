@@ -38,7 +38,7 @@ class PredictedArea {
     across_ = speed_ * direction.sin;
     auto const sides = corridor_->widths_at(place_.s, place_.segment);
     bool const returns = across_ * place_.lateral < 0.0;
-    double const to_go = returns ? std::abs(place_.lateral) : sides.left + sides.right;
+    double const off = std::abs(place_.lateral), to_go = returns ? off : sides.left + sides.right - off;
     constexpr double slow = 1e-3, quickest = 2.0;  // [m/s], [1/s]
     if (std::abs(across_) > slow) rate_ = std::min(quickest, std::abs(across_) / std::max(slow, to_go));
     turn_ = speed_ * corridor_->sharpest_bend + std::abs(place_.heading_error) * rate_;
@@ -188,9 +188,10 @@ struct TimeToCollision {
   }
 };
 
-/// Least constant deceleration at which the agent touches nobody within `longest` [s] if all others keep their speeds
-/// and all keep their lanes, at most `most` [m/s^2]; 0 where it touches nobody anyway. For a leader it is that of
-/// Almqvist, Hyden, Risser 1991 (DRAC). Those behind it do not count. To 0.1 % of `most`. O(agents + objects).
+/// Constant deceleration at which the agent does not touch another road user or an object within `longest` [s] if the
+/// other keeps its speed and both keep their lanes; the largest of those that each other one asks for alone, at most
+/// `most` [m/s^2]; 0 where it touches nobody anyway. For a leader it is that of Almqvist, Hyden, Risser 1991 (DRAC).
+/// Those behind it do not count. To 0.1 % of `most`. O(agents + objects).
 struct RequiredDeceleration {
   double most = 50.0;
   double longest = 10.0;

@@ -19,17 +19,16 @@ namespace cambium {
 
 /// Whether the motion of an agent's last step is one that no vehicle can make, by its states before and after it:
 ///
-/// - `way`: it is longer or shorter than its speeds allow: mean speed times dt, and what the hardest braking or
-/// throttle
-///   between the two speeds adds or takes;
+/// - `way`: it is longer or shorter than its speeds allow: mean speed times dt, and what the hardest braking and
+///   throttle between the two speeds add or take;
 /// - `sideways`: it leads off its headings, by more than a curvature that changes within grip can;
 /// - `acceleration`: it changes its speed faster than its dynamics permits, where that has bounds, or than grip does;
 /// - `turn`: it turns more than its way times tan(steering limit) / wheel base;
-/// - `grip`: sqrt(a_along^2 + a_across^2) is more than tyres can.
+/// - `grip`: sqrt(a_along^2 + a_across^2) is more than tyres can, or than its dynamics permits where that is more.
 ///
 /// The reference point is the rear axle, as in `SingleTrack`. A speed, a place and a heading may each be off by a
-/// tolerance. True only right after a step, see `World::before_step`; who enters or stands still is never infeasible.
-/// O(1).
+/// tolerance in each step. True only right after a step, see `World::before_step`; who enters or stands still is never
+/// infeasible. O(1).
 struct Infeasible {
   /// What is wrong with a motion.
   enum class Flaw : std::uint8_t { none, way, sideways, acceleration, turn, grip };
@@ -109,7 +108,8 @@ struct Infeasible {
     if (turned > bend * (std::abs(way) + slack)) return {Flaw::turn, turn, bend * (std::abs(way) + slack)};
     double const lateral = std::max(0.0, mean - speed) * turned / dt, braked = std::max(0.0, std::abs(a) - inexact);
     double const used = std::sqrt(lateral * lateral + braked * braked);
-    if (used > grip) return {Flaw::grip, used, grip};
+    double const most_grip = std::max(grip, portable::hypot(lowest, largest_lateral_of(dynamics)));
+    if (used > most_grip) return {Flaw::grip, used, most_grip};
     return {};
   }
 
@@ -126,6 +126,16 @@ struct Infeasible {
       return {std::max(-grip, dynamics.lowest_acceleration), std::min(grip, dynamics.highest_acceleration)};
     else
       return {-grip, grip};
+  }
+  /// Largest acceleration across the heading that the dynamics permits; 0 where it has no such bound.
+  template <class Dynamics>
+  [[nodiscard]] static double largest_lateral_of(Dynamics const& dynamics) {
+    if constexpr (requires { dynamics.visit([](auto const&) {}); })
+      return dynamics.visit([](auto const& one) { return largest_lateral_of(one); });
+    else if constexpr (requires { dynamics.lateral_acceleration_limit; })
+      return dynamics.lateral_acceleration_limit;
+    else
+      return 0.0;
   }
   /// Largest curvature [1/m] that the steering permits; infinite where the dynamics has none.
   template <class Dynamics>

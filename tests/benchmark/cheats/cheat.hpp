@@ -22,6 +22,7 @@ struct Cheat {
     blinker,        ///< brakes hard for a step at a time, too short for filtered accelerations
     crab,           ///< goes sideways around its leader
     bullet,         ///< keeps its speed, whatever is in the way
+    ghost,          ///< says that it has not started while something is in its way
     odd,            ///< plans a place that is no number
     judges_twin,    ///< accelerates and brakes as hard as the published score just permits
     brake_checker,  ///< brakes hard for nothing, so that whoever follows runs into it
@@ -30,10 +31,10 @@ struct Cheat {
   Kind kind = Kind::honest;
   static constexpr char const* name = "cheat";
   static constexpr auto parameters() {
-    return cambium::parameter_list(cambium::choice(
-        "kind", &Cheat::kind,
-        "honest|two_faced|statue|flincher|bumper|teleporter|liar|blinker|crab|bullet|odd|judges_twin|brake_checker",
-        "what it does"));
+    return cambium::parameter_list(cambium::choice("kind", &Cheat::kind,
+                                                   "honest|two_faced|statue|flincher|bumper|teleporter|liar|blinker|"
+                                                   "crab|bullet|ghost|odd|judges_twin|brake_checker",
+                                                   "what it does"));
   }
 
   template <class View>
@@ -85,6 +86,7 @@ struct Cheat {
     state.time += dt;
     cambium::Plan<View> plan;
     plan.trajectory.push_back(state);
+    if (kind == Kind::ghost && gap < 20.0) plan.status = cambium::PlanStatus::not_started;
     if (kind != Kind::honest) plan.action.acceleration = kind == Kind::two_faced && state.x > 100.0 ? -12.0 : 1e-9;
     return plan;
   }

@@ -197,7 +197,7 @@ const update = () => {
     return is('set', group.set) && is('behavior', group.label) && is('outcome', outcomes[row[2]]) &&
         (!$('split').checked || succeeds.get(group.hash + ' ' + row[1]) === 3) &&
         (!text || String(row[1]) === text || (group.set + ' ' + group.label + ' ' + outcomes[row[2]] + ' ' +
-            (errors[row.index] || '') + (violations[row.index] || []).map((item) => item[1]).join(' ').replaceAll('_', ' ')).toLowerCase().includes(text));
+            (errors[row.index] || '') + ' ' + (violations[row.index] || []).map((item) => item[1]).join(' ').replaceAll('_', ' ')).toLowerCase().includes(text));
   });
   const sign = down ? -1 : 1;
   found.sort((a, b) => {

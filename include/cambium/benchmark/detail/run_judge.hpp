@@ -47,7 +47,6 @@ struct RunRule {
 
   char const* name;  ///< of the field
   bool RunResult::*is_broken;
-  double least;  ///< shorter violations do not count [s]
   RuleMonitor<Labels> monitor;
 };
 
@@ -55,18 +54,17 @@ struct RunRule {
 [[nodiscard]] inline std::vector<RunRule> const& run_rules() {
   static std::vector<RunRule> const all = [] {
     constexpr std::size_t others = 16, violations = 16;
-    constexpr double passing = 1.0;  // [s] no ride against traffic, but the way around something
     auto rules = intersection_rules<RunRule::Labels>();
     for (auto& rule : road_rules<RunRule::Labels>()) rules.push_back(std::move(rule));
     std::vector<RunRule> list;
-    auto const add = [&](std::string_view rule, char const* name, bool RunResult::*field, double least = 0.0) {
+    auto const add = [&](std::string_view rule, char const* name, bool RunResult::*field) {
       auto const at = std::ranges::find(rules, rule, &TrafficRule<RunRule::Labels>::name);
-      list.push_back({name, field, least, RuleMonitor<RunRule::Labels>(*at, others, violations)});
+      list.push_back({name, field, RuleMonitor<RunRule::Labels>(*at, others, violations)});
     };
     add("red_light", "red_light", &RunResult::red_light);
     add("stop_sign", "stop_sign", &RunResult::stop_sign);
     add("give_way", "right_of_way", &RunResult::right_of_way);
-    add("wrong_way", "wrong_way", &RunResult::wrong_way, passing);
+    add("wrong_way", "wrong_way", &RunResult::wrong_way);
     add("speed_limit", "speeding", &RunResult::speeding);
     add("solid_line", "solid_line", &RunResult::solid_line);
     return list;
@@ -110,6 +108,7 @@ class RunJudge {
     for (auto const agent : own_) ask_whether_possible(world, agent);
     result_.off_road = result_.off_road || OffRoad{}(world, ego_);
     result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
+    against_.observe(world, ego_, dt);
     if (auto const contact = Collision{}.contact(world, ego_)) {
       note_collision(world, contact->agent);
       result_.at_fault = AtFaultCollision{}(world, ego_);
@@ -165,13 +164,20 @@ class RunJudge {
     result_.hit = other;
   }
 
-  /// A collision between two frames counts, too. Nobody is at fault: how they met is not known.
+  /// A collision between two frames counts, too. Where both moved, nobody is at fault: how they met is not known.
   void note_drive_through(World const& world) {
     if (!in_traffic(world, ego_)) return;
     auto const own = motion_at(world, ego_);
+    auto const moves = [&](Slot slot) { return world.frame().agents[slot].state.speed > blameless_speed; };
+    if (touched_object(world, own) != nullptr) {
+      note_collision(world, none<AgentId>);
+      result_.at_fault = moves(ego_);
+      return;
+    }
     for (Slot slot{}; index_of(slot) < world.size() && !result_.collision; ++slot) {
       if (slot == ego_ || !in_traffic(world, slot) || !geometry::intersects(own, motion_at(world, slot))) continue;
       note_collision(world, world.roster().agents[slot].id);
+      result_.at_fault = moves(ego_) && !moves(slot);
     }
   }
 
@@ -185,8 +191,8 @@ class RunJudge {
     auto const seconds = [](double time) { return rounded_text(time) + " s"; };
     for (auto& rule : rules_) {
       rule.monitor.finish();
+      if (rule.is_broken == &RunResult::wrong_way && against_.value() < long_against) continue;
       for (auto const& violation : rule.monitor.violations()) {
-        if (violation.end - violation.begin < rule.least - same_time) continue;
         result_.*rule.is_broken = true;
         auto text = std::string(rule.name);
         if (is_valid(violation.other)) text += " to agent " + to_string(violation.other);
@@ -203,6 +209,8 @@ class RunJudge {
     for (auto const& item : items)
       result_.violations += (result_.violations.empty() ? "" : "; ") + seconds(item.time) + " " + item.text;
   }
+
+  static constexpr double long_against = 1.0 - same_time;  // [s] less is no ride, but the way around something
 
   struct Worst {
     double time = 0.0;
@@ -272,6 +280,7 @@ class RunJudge {
   Slot ego_;
   RunResult result_;
   bool others_collide_ = false;
+  Integral<OncomingLane> against_{};  ///< time in lanes of oncoming traffic [s]
   Worst worst_{};
   std::vector<RunRule> rules_ = run_rules();
   Metrics metrics_{};

@@ -39,7 +39,7 @@ namespace cambium {
 /// Departures: `expected_progress` takes the place of a human driver's. Accelerations are differences of states, not
 /// filtered, so that what lasts for a step only counts, too. The time to collision follows the lanes, not the headings,
 /// and is exact, not on a grid of 0.1 s. Each collision counts as one with a vehicle: nuPlan punishes those with
-/// objects less.
+/// objects less. Progress has no floor of 2 m, and what equals a bound of comfort is comfortable.
 struct ClosedLoopScore {
   double expected_progress = 0.0;
   double least_progress = 0.2;
@@ -152,7 +152,7 @@ struct ClosedLoopScore {
   /// Bounds of nuPlan, taken from human drivers.
   template <class World>
   [[nodiscard]] bool is_comfortable(World& world, Slot slot, double dt) {
-    if (world.history_size() == 0) return true;
+    if (world.history_size() == 0 || world.history(1).agents[slot].status != AgentStatus::driving) return true;
     auto const &now = world.frame().agents[slot].state, &before = world.history(1).agents[slot].state;
     double const along = Acceleration{}(world, slot), across = LateralAcceleration::between(before, now);
     double const size = portable::hypot(along, across);

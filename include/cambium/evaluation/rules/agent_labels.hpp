@@ -49,7 +49,8 @@ struct ChangesLane {
 };
 
 /// Whether an agent's reference point passed into a neighbouring lane in the last step, where the road marks do not
-/// permit it. False where no step led here, see `World::before_step`. O(1).
+/// permit it, by those beside its place before the step. Only lanes of its own direction count: `OncomingLane` sees the
+/// others. False where no step led here, see `World::before_step`. O(1).
 struct CrossesSolidLine {
   static constexpr char const* name = "crosses_solid_line";
   static constexpr char const* summary = "passed into a neighbouring lane where the road marks forbid it";

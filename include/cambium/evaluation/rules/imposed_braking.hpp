@@ -23,8 +23,10 @@ namespace detail {
 /// lower speed limit, or a bend. O(conflicts + signals + bends there).
 template <class World>
 [[nodiscard]] bool has_reason_to_brake(World& world, Slot slot, double distance, double speed) {
-  auto const next = world.truth(slot).ahead();
-  if (next && next->gap < distance) return true;
+  if (auto const next = world.truth(slot).ahead(); next && next->gap < distance) {
+    double const closing = std::max(0.0, speed - next->speed), room = std::max(0.1, next->gap - 2.0);  // [m]
+    if (next->gap < 5.0 + speed || 0.5 * closing * closing / room > 1.0) return true;                  // [m], [m/s^2]
+  }
   auto const& corridor = corridor_of(world, slot);
   double const s = world.frame().agents[slot].lane.s, front = s + world.roster().agents[slot].shape.front;
   double const end = front + distance;
@@ -87,15 +89,22 @@ struct ImposedBraking {
  private:
   template <class World>
   [[nodiscard]] static bool takes_right_of_way(World& world, Slot slot, Slot other) {
-    return detail::any_mutual_conflict(world, slot, other, 0.0, 0.0, [](detail::MutualConflict const& mutual) {
-      return mutual.conflict.right_of_way == map::RightOfWay::yields && mutual.at < mutual.zone.other_end;
+    constexpr double near = 4.0;  // [s] to the conflict
+    double const way = near * world.frame().agents[other].state.speed;
+    return detail::any_mutual_conflict(world, slot, other, 0.0, 0.0, [&](detail::MutualConflict const& mutual) {
+      auto const& [conflict, zone, at] = mutual;
+      if (conflict.right_of_way != map::RightOfWay::yields || at >= zone.other_end || zone.other_begin - at > way)
+        return false;
+      return !is_valid(conflict.other_light) || world.truth(slot).light(conflict.other_light) != map::LightColor::red;
     });
   }
 
   template <class World>
   [[nodiscard]] static bool follows(World& world, Slot other, Slot slot) {
+    constexpr double longest = 3.0, standing = 5.0;  // [s], [m] one farther behind brakes for its own reasons
     auto const next = world.truth(other).ahead();
-    return next && is_valid(next->agent) && next->slot == slot;
+    return next && is_valid(next->agent) && next->slot == slot &&
+           next->gap < standing + longest * world.frame().agents[other].state.speed;
   }
 
   /// Whether the agent braked hard in the last step though nothing was in the way in which it could stop comfortably.

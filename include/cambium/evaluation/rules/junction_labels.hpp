@@ -8,7 +8,9 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/evaluation/rules/relative_place.hpp"
+#include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/lanes/signals.hpp"
@@ -62,8 +64,11 @@ template <class World>
     return std::nullopt;
   auto const& then = (*before)[slot];
   if (then.lane.corridor == now.lane.corridor) return now.lane.s - then.lane.s;
-  auto const& center = corridor_of(world, slot).center;
-  return now.lane.s - center.project({then.state.x, then.state.y}, now.lane.segment).s;
+  // By its front end, which passes the lines: in a bend, other points make other ways.
+  double const front = world.roster().agents[slot].shape.front;
+  auto const heads = portable::sin_cos(then.state.heading);
+  geometry::Point const end{then.state.x + front * heads.cos, then.state.y + front * heads.sin};
+  return now.lane.s + front - corridor_of(world, slot).center.project(end, now.lane.segment).s;
 }
 
 }  // namespace detail

@@ -94,7 +94,7 @@ class WorldStep {
     next.state = executed.state;
     next.action = plan.action;
     double const driven = (executed.state.speed - now.state.speed) / dt_;
-    next.acceleration = static_cast<float>(driven);
+    next.acceleration = now.status == AgentStatus::driving ? static_cast<float>(driven) : 0.0f;
     if (now.status != AgentStatus::driving) [[unlikely]]
       forget_past(next);
     else if (plan.action.acceleration == 0.0) [[unlikely]]  // the behaviour may not have said it
