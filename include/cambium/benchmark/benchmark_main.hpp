@@ -233,13 +233,17 @@ void run_sets(std::vector<ScenarioSet<World>> const& sets, std::vector<std::file
   store.begin_run(time_of_day(), words);
   std::size_t jobs = 0, results = 0;
   auto const begin = std::chrono::steady_clock::now();
-  SaysHowToGoOn const on_interrupt;
-  for (std::size_t s = 0; s < sets.size(); ++s) {
-    ProgressBar bar(sets[s].title + " (" + std::to_string(s + 1) + " of " + std::to_string(sets.size()) + ")");
+  {
+    SaysHowToGoOn const on_interrupt;
+    ProgressBar bar;  // one for all sets: each may take less than a minute
     options.progress = [&bar](std::size_t done, std::size_t total) { bar(done, total); };
-    options.source = source_of(command, files[s], defaults.sets);
-    options.command = defaults.command;
-    jobs += run_benchmark(sets[s], contenders, store, options);
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+      bar.begin(sets[s].title + " (" + std::to_string(s + 1) + " of " + std::to_string(sets.size()) + ")");
+      options.source = source_of(command, files[s], defaults.sets);
+      options.command = defaults.command;
+      jobs += run_benchmark(sets[s], contenders, store, options);
+    }
+    options.progress = {};
   }
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   auto const groups = chosen_results(store, sets, contenders);

@@ -32,7 +32,7 @@ namespace cambium {
 class ProgressBar {
  public:
   /// `what` stands at the head of the line.
-  explicit ProgressBar(std::string what) : what_(std::move(what)) {
+  explicit ProgressBar(std::string what = {}) : what_(std::move(what)) {
 #if defined(__unix__) || defined(__APPLE__)
     is_terminal_ = isatty(STDERR_FILENO) == 1;
 #endif
@@ -41,6 +41,12 @@ class ProgressBar {
   ProgressBar& operator=(ProgressBar const&) = delete;
   ~ProgressBar() {
     if (is_drawn_) std::fputs("\r\033[K", stderr);
+  }
+
+  /// Begins another piece of work.
+  void begin(std::string what) {
+    what_ = std::move(what);
+    begin_ = Clock::now();
   }
 
   void operator()(std::size_t done, std::size_t total) {

@@ -77,7 +77,7 @@ struct RunResult {
         parameter("success", &P::success,
                   "the ego reached its goal in time, without a collision and what its set calls a failure"),
         parameter("collision", &P::collision, "the ego touched an agent or an object"),
-        parameter("at_fault", &P::at_fault, "it caused that: it moved, and the other was not behind it"),
+        parameter("at_fault", &P::at_fault, "it is to blame for that, by nuPlan's rules"),
         parameter("off_road", &P::off_road, "a part of it left the drivable lanes"),
         parameter("off_route", &P::off_route, "it left its route, or traffic before its goal"),
         parameter("timed_out", &P::timed_out, "the time limit passed"),
