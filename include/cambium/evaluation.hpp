@@ -8,6 +8,7 @@
 #include "cambium/evaluation/infeasible.hpp"
 #include "cambium/evaluation/metrics/closed_loop_score.hpp"
 #include "cambium/evaluation/metrics/displacement.hpp"
+#include "cambium/evaluation/metrics/exposure.hpp"
 #include "cambium/evaluation/metrics/over_time.hpp"
 #include "cambium/evaluation/metrics/per_agent.hpp"
 #include "cambium/evaluation/metrics/post_encroachment_time.hpp"

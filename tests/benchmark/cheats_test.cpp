@@ -1,6 +1,7 @@
 // Drivers that game a judge: each gets its failure, and its row says why.
 #include <cambium/benchmark/contender.hpp>
 #include <cambium/cambium.hpp>
+#include <cambium/evaluation/rules.hpp>
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,12 +9,13 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <random>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "../support/merging_set.hpp"
 #include "cheats/cheat.hpp"
 
 using namespace cambium;
@@ -22,7 +24,7 @@ using Kind = Cheat::Kind;
 
 namespace {
 
-using Traffic = World<BehaviorSet<IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+using Traffic = World<BehaviorSet<IdmClassic, ConstantAcceleration, Cheat>, InterpolateExecution, SingleTrack>;
 
 /// Another vehicle of a scenario.
 struct Other {
@@ -69,19 +71,69 @@ TEST_CASE("an honest driver succeeds, alone, behind a slower one and where that 
     auto const result = judged(Kind::honest, scenario, {.time_limit = 90});
     CHECK(result.success);
     CHECK(result.violations == "");
+    CHECK(result.failed_by == "");
     CHECK(result.infeasible_steps == 0);
     CHECK(std::isnan(result.impact_speed));
   }
 }
 
-TEST_CASE("what plans claim changes nothing") {
-  for (auto const& scenario : {scene(20, {{80, -1.75, 12}, {10, -1.75, 18, IdmClassic{}}}),
-                               scene(5, {{60, -1.75, 15, IdmClassic{.law = {.desired_speed = 5}}}})})
-    for (double const step : {0.1, 0.2}) {
-      RunOptions const options{.time_step = step};
-      CHECK(to_string(judged(Kind::two_faced, scenario, options)) ==
-            to_string(judged(Kind::honest, scenario, options)));
+TEST_CASE("what plans claim changes nothing, whoever claims it") {
+  for (auto const kind : {Kind::honest, Kind::two_faced})
+    for (auto const& scenario : {scene(20, {{80, -1.75, 12, Cheat{kind}}, {10, -1.75, 18, IdmClassic{}}}),
+                                 scene(5, {{60, -1.75, 15, IdmClassic{.law = {.desired_speed = 5}}}}),
+                                 scene(20, {{10, -1.75, 22, Cheat{kind}}, {90, -5.25, 12, Cheat{kind}}})})
+      for (double const step : {0.1, 0.2}) {
+        RunOptions const options{.time_step = step};
+        CHECK(to_string(judged(Kind::two_faced, scenario, options)) ==
+              to_string(judged(Kind::honest, scenario, options)));
+      }
+}
+
+namespace {
+
+/// What evaluators, metrics and rules say of each agent in each step of a world whose drivers are all of one kind.
+std::vector<double> said_of(Kind kind) {
+  using Own = Traffic::WithBehaviors<BehaviorSet<Cheat>>;
+  Own world(support::straight_road(2, 500));
+  for (auto const& [x, y, speed] : {std::tuple{30.0, -1.75, 20.0}, {70.0, -1.75, 8.0}, {20.0, -5.25, 18.0}})
+    world.add({.position = {x, y}, .speed = speed, .behavior = Cheat{kind}});
+  world.keep_history(1);
+  auto const evaluators =
+      std::tuple<Collision, AtFaultCollision, OffRoad, OncomingLane, Straddles, Infeasible, AtGoal, PastJunctions,
+                 Progress, SpeedDeviation, SpeedLimitExcess, LaneChangeUrgency, LaneOffset, Acceleration, HardBraking,
+                 LateralAcceleration, Jerk, Gap, TimeHeadway, Clearance, TimeToCollision, RequiredDeceleration,
+                 BrakeThreatNumber, Closeness, OthersBraking>();
+  std::tuple<PostEncroachmentTime, ImposedBraking, Exposure, RssCompliance, ClosedLoopScore, Displacement> metrics[3];
+  std::vector<RuleMonitor<RuleLabels<>>> monitors;
+  for (auto const& rules : {highway_rules(), intersection_rules(), road_rules()})
+    for (auto const& rule : rules)
+      for (int i = 0; i < 3; ++i) monitors.emplace_back(rule);
+  std::vector<double> said;
+  auto const add = [&](auto value) { said.push_back(static_cast<double>(value)); };
+  for (int step = 0; step < 100; ++step) {
+    REQUIRE(world.step(0.2));
+    add(AnyCollision{}(world));
+    for (Slot slot{}; index_of(slot) < 3; ++slot) {
+      std::apply([&](auto const&... evaluator) { (add(evaluator(world, slot)), ...); }, evaluators);
+      auto const watch = [&](auto& metric) {
+        metric.observe(world, slot, 0.2);
+        add(metric.value());
+      };
+      std::apply([&](auto&... metric) { (watch(metric), ...); }, metrics[index_of(slot)]);
+      for (std::size_t i = index_of(slot); i < monitors.size(); i += 3) add(static_cast<int>(monitors[i](world, slot)));
     }
+  }
+  return said;
+}
+
+}  // namespace
+
+TEST_CASE("no evaluator, metric or rule reads a plan") {
+  auto const honest = said_of(Kind::honest), lied = said_of(Kind::two_faced);
+  REQUIRE(honest.size() == lied.size());
+  auto const same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  CHECK(std::ranges::equal(honest, lied, same));
+  CHECK_FALSE(std::ranges::equal(honest, said_of(Kind::blinker), same));  // it sees what is driven
 }
 
 TEST_CASE("who does not move has no success") {
@@ -119,6 +171,18 @@ TEST_CASE("places that run ahead of the speed are no motion of a vehicle") {
   CHECK_FALSE(result.success);
   CHECK(result.infeasible_steps == result.steps);
   CHECK(says(result, "infeasible: agent 0 moves 12 m in a step, possible are 4.1"));
+}
+
+TEST_CASE("what a single step may be off cannot be had in every step") {
+  auto crept = scene(0);
+  crept.agents.front().goal = ReachLane{crept.map->lanes().front().id, 40.0, 490.0};
+  auto const creeps = judged(Kind::creeper, crept);
+  CHECK_FALSE(creeps.success);
+  CHECK(creeps.failed_by == "infeasible");
+  CHECK(says(creeps, "agent 0 drifts from its speeds by "));
+  auto const drifts = judged(Kind::drifter, scene(20, {{150, -1.75, 12}}));
+  CHECK_FALSE(drifts.success);
+  CHECK(says(drifts, "agent 0 drifts off its headings by -"));
 }
 
 TEST_CASE("accelerations are those that were driven, not those that were claimed") {
@@ -175,6 +239,7 @@ TEST_CASE("a red light makes a run no success, unless its set chooses otherwise"
   auto result = judged(Kind::bullet, scenario);
   CHECK_FALSE(result.success);
   CHECK(result.red_light);
+  CHECK(result.failed_by == "red_light");
   CHECK(says(result, "s red_light"));
   auto const moments = violations_of(result);
   REQUIRE(moments.size() == 1);
@@ -192,7 +257,10 @@ TEST_CASE("what others had to brake because of the ego is on record, and a crite
   auto const result = judged(Kind::brake_checker, checked, options);
   CHECK(result.imposed_braking > 4.0);
   CHECK_FALSE(result.success);
+  CHECK(result.failed_by == "imposed_braking");
+  CHECK(says(result, " s imposed_braking of "));
   CHECK(judged(Kind::honest, checked, options).success);
+  CHECK(judged(Kind::brake_checker, checked, {.fails = options.fails, .bounds = {.imposed_braking = 20.0}}).success);
   CHECK(judged(Kind::honest, checked, options).imposed_braking == 0.0);
 
   auto cuts = scene(12, {{15, -1.75, 20, follower}});
@@ -213,6 +281,9 @@ TEST_CASE("who stays between two lanes is on record, and fails where the set cho
   auto const result = judged(Kind::bullet, between, options);
   CHECK(result.straddling_s > 15.0);
   CHECK_FALSE(result.success);
+  CHECK(result.failed_by == "straddling");
+  CHECK(says(result, "0 s straddling until "));
+  CHECK(judged(Kind::bullet, between, {.fails = options.fails, .bounds = {.straddling = 30.0}}).success);
   CHECK(judged(Kind::bullet, scene(20), options).straddling_s == 0.0);
   CHECK(judged(Kind::bullet, scene(20), options).success);
 }
@@ -232,6 +303,7 @@ TEST_CASE("a ride against traffic makes a run no success") {
   CHECK(result.wrong_way);
   CHECK_FALSE(result.success);
   CHECK(says(result, "s wrong_way until "));
+  CHECK(judged(Kind::bullet, scenario, {.bounds = {.wrong_way = 100.0}}).success);
 }
 
 TEST_CASE("who drives to the letter of the score loses by hidden bounds, who drives well does not") {
@@ -255,38 +327,66 @@ TEST_CASE("who drives to the letter of the score loses by hidden bounds, who dri
   CHECK(score(Kind::honest, 0.9) == 1.0);
 }
 
+namespace {
+
+/// Drives at the speeds of another run, or gets there as fast as a vehicle can.
+struct Recalled {
+  static constexpr char const* name = "recalled";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  std::shared_ptr<std::vector<double> const> speeds;  ///< after each step
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
+    double const speed = view.state().speed;
+    auto const next = static_cast<std::size_t>(std::llround(view.state().time / dt)) + 1;
+    double const wanted = next < speeds->size() ? (*speeds)[next] : speeds->back();
+    double const to = std::clamp(wanted, std::max(0.0, speed - 8.0 * dt), speed + 4.0 * dt);
+    return plan_along_lane(view, {0.5 * (speed + to) * dt, to}, dt);
+  }
+};
+
+}  // namespace
+
 TEST_CASE("who has learnt the futures of some seeds by heart gains nothing on fresh ones") {
-  auto set = support::merging_set<Traffic>(8);
-  for (std::size_t i = 0; i < set.scenarios.size(); ++i) set.scenarios[i].seed = 100 + i;
+  std::vector<Scenario<Traffic>> scenarios;  // behind a leader whom only the seed knows
+  std::mt19937_64 random(3);
+  auto const uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
+  };
+  for (std::uint64_t seed = 100; seed < 112; ++seed) {
+    double const ahead = uniform(70, 130), speed = uniform(6, 18), later = uniform(2, 18);
+    scenarios.push_back(scene(20, {{ahead, -1.75, speed, IdmClassic{.law = {.desired_speed = later}}}}));
+    scenarios.back().seed = seed;
+  }
+  RunOptions const options{.time_limit = 200.0};
   auto const honest = contender<Traffic>(IdmClassic{.law = {.desired_speed = 22.0}});
-  std::map<std::uint64_t, StaticTrajectory> known;  // by seed
+  std::map<std::uint64_t, Recalled> known;  // by seed
   for (std::size_t i = 0; i < 4; ++i) {
-    auto const& scenario = set.scenarios[i];
-    auto const run = honest.run(scenario, {}, true);
+    auto const run = honest.run(scenarios[i], options, true);
     REQUIRE(run.recording);
     auto const& agents = run.recording->agents;
     auto const ego =
-        static_cast<std::size_t>(std::ranges::find(agents, scenario.ego, &RecordedAgent::id) - agents.begin());
-    std::vector<State> states;
-    for (auto const& frame : run.recording->frames) {
-      auto const& pose = frame.poses[ego];
-      states.push_back({frame.time, pose.x, pose.y, pose.heading, pose.speed});
-    }
-    known.emplace(scenario.seed, StaticTrajectory(std::move(states)));
+        static_cast<std::size_t>(std::ranges::find(agents, scenarios[i].ego, &RecordedAgent::id) - agents.begin());
+    std::vector<double> speeds;
+    for (auto const& frame : run.recording->frames) speeds.push_back(frame.poses[ego].speed);
+    known[scenarios[i].seed].speeds = std::make_shared<std::vector<double> const>(std::move(speeds));
   }
   auto const oracle = contender_by<Traffic>("oracle", "", 0, [&](auto const&, auto const& scenario) {
     auto const at = known.find(scenario.seed);
     return at != known.end() ? at->second : known.begin()->second;
   });
   std::size_t at_home = 0, elsewhere = 0, honestly = 0;
-  for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
-    bool const succeeds = oracle.run(set.scenarios[i], {}, false).result.success;
-    (i < 4 ? at_home : elsewhere) += succeeds;
-    honestly += i >= 4 && honest.run(set.scenarios[i], {}, false).result.success;
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    auto const result = oracle.run(scenarios[i], options, false).result;
+    INFO(to_string(result));
+    (i < 4 ? at_home : elsewhere) += result.success;
+    if (!result.success) CHECK(result.collision);
+    honestly += i >= 4 && honest.run(scenarios[i], options, false).result.success;
   }
   CHECK(at_home == 4);
-  CHECK(honestly == 4);
-  CHECK(elsewhere == 0);
+  CHECK(honestly == 8);
+  CHECK(elsewhere <= 4);
 }
 
 TEST_CASE("a criterion that the map cannot answer fails the run with a sentence") {
@@ -295,6 +395,16 @@ TEST_CASE("a criterion that the map cannot answer fails the run with a sentence"
   CHECK(result.error ==
         "the set: fails runs by \"speeding\", but no lane of the map has a speed limit; leave it out of \"fails\", or "
         "give the map limits");
+}
+
+TEST_CASE("who throws, or takes too long, has failed") {
+  auto const threw = judged(Kind::thrower, scene(20));
+  CHECK_FALSE(threw.success);
+  CHECK(threw.error == "out of ideas");
+  auto const late = judged(Kind::honest, scene(20), {.plan_limit = 1e-9});
+  CHECK_FALSE(late.success);
+  CHECK(late.error_kind == RunErrorKind::plans_too_long);
+  CHECK(late.error == "its plans took longer than 1e-09 s together");
 }
 
 TEST_CASE("a plan that is no number is an error that says so") {

@@ -233,7 +233,8 @@ TEST_CASE("verdicts that another judge changed are found with their reasons, als
   for (std::size_t i = 3; i < 30; ++i) {
     judged.rows[i].result.success = false;
     judged.rows[i].result.red_light = true;
-    judged.rows[i].result.violations = "3.4 s red_light; 5 s wrong_way until 7.2 s";
+    judged.rows[i].result.violations = "1 s solid_line; 3.4 s red_light; 5 s wrong_way until 7.2 s";
+    judged.rows[i].result.failed_by = "red_light wrong_way";
   }
   judged.rows[3].result.collision = judged.rows[3].result.at_fault = true;
   auto const found = compare_against({old}, {judged}, "old.db", "new.db");

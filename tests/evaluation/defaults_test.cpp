@@ -15,7 +15,8 @@ TEST_CASE("evaluators, metrics and labels have the documented defaults, units an
                                 OthersBraking, Gap, Closeness, TimeToCollision, RequiredDeceleration, Clearance,
                                 Weighted<Progress>, ClosedLoopScore, Constant, SafeDistance, Exceeds<Acceleration>,
                                 DenseTraffic, AtLaneEnd, RightmostLane, LeftmostLane, BeyondPoint, AgentNear,
-                                RelativeSpeed, ZipPartner, SignalAhead, MustGiveWay, PassesSignal, Infeasible>() == &R"(
+                                RelativeSpeed, ZipPartner, SignalAhead, MustGiveWay, PassesSignal, Infeasible,
+                                TimeHeadway, BrakeThreatNumber, Exposure, ImposedBraking>() == &R"(
 collision | margin | 0 | m | [0, 100]
 at_fault_collision | blameless_speed | 0.05 | m/s | [0, 10]
 at_fault_collision | look_ahead | 0 | s | [0, 60]
@@ -81,6 +82,17 @@ infeasible | grip | 10 | m/s^2 | [0.1, 100]
 infeasible | place | 0.05 | m | [0, 10]
 infeasible | heading | 0.01 | rad | [0, 1]
 infeasible | speed | 0.05 | m/s | [0, 10]
+time_headway | longest | 10 | s | [0, 1000]
+brake_threat_number | required.most | 50 | m/s^2 | [0, 1e+06]
+brake_threat_number | required.longest | 10 | s | [0, 1000]
+brake_threat_number | required.bearing | 2.6179938779914944 | rad | [0, 3.2]
+brake_threat_number | possible | 8 | m/s^2 | [0.1, 50]
+exposure | time_to_collision.longest | 10 | s | [0, 1000]
+exposure | time_to_collision.bearing | 2.6179938779914944 | rad | [0, 3.2]
+exposure | threshold | 2 | s | [0, 1000]
+imposed_braking | comfortable | 2 | m/s^2 | [0, 50]
+imposed_braking | hard | 4 | m/s^2 | [0, 50]
+imposed_braking | memory | 5 | s | [0, 1000]
 )"[1]);
   PostEncroachmentTime const encroachment;
   CHECK(encroachment.longest == 5.0);

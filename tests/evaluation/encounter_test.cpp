@@ -13,6 +13,8 @@
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/driving.hpp"
+#include "cambium/evaluation/metrics/exposure.hpp"
 #include "cambium/evaluation/metrics/post_encroachment_time.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/building/map_builder.hpp"
@@ -90,6 +92,10 @@ TEST_CASE("behind a slower leader: 24.5 m at 20 and 10 m/s") {
     CHECK(TimeToCollision{.longest = 2.0}(world, Slot{0}) == 2.0);
     CHECK(RequiredDeceleration{}(world, Slot{0}) == doctest::Approx(100.0 / 49.0).epsilon(0.03));
     CHECK(RequiredDeceleration{.most = 1.0}(world, Slot{0}) == 1.0);
+    CHECK(TimeHeadway{}(world, Slot{0}) == doctest::Approx(24.5 / 20.0));
+    CHECK(TimeHeadway{.longest = 1.0}(world, Slot{0}) == 1.0);
+    CHECK(TimeHeadway{}(world, Slot{1}) == 10.0);  // nobody is ahead
+    CHECK(BrakeThreatNumber{.possible = 11.5}(world, Slot{0}) == doctest::Approx(0.177).epsilon(0.03));
     CHECK(Clearance{}(world, Slot{0}) == doctest::Approx(24.5));
     CHECK(Clearance{.farthest = 20.0}(world, Slot{0}) == 20.0);
     CHECK(TimeToCollision{}(world, Slot{1}) == 10.0);  // what comes from behind does not count
@@ -122,6 +128,27 @@ TEST_CASE("a vehicle that crosses: they meet, or one passes before the other") {
     CHECK(own.value() == doctest::Approx(0.9625).epsilon(0.015));
     CHECK(its.value() == own.value());
   });
+}
+
+TEST_CASE("exposure to a collision: for how long the time to it is short, and by how much") {
+  from_anywhere([](Stage const& stage) {
+    // The time is 2.45 s at first, and 1 s at the end.
+    auto world = stage.world({0, 0, 0, 20}, {29.5, 0, 0, 10});
+    Exposure exposure, strict;
+    strict.threshold = 0.5;
+    constexpr double step = 0.0125;
+    for (int i = 0; i < 116; ++i) {
+      REQUIRE(world.step(step));
+      exposure.observe(world, Slot{0}, step);
+      strict.observe(world, Slot{0}, step);
+    }
+    CHECK(exposure.value() == doctest::Approx(1.0).epsilon(0.03));
+    CHECK(exposure.integrated() == doctest::Approx(0.5).epsilon(0.03));
+    CHECK(exposure.least() == doctest::Approx(1.0).epsilon(0.01));
+    CHECK(strict.value() == 0.0);
+    CHECK(strict.integrated() == 0.0);
+  });
+  CHECK(Exposure{}.least() == 10.0);
 }
 
 TEST_CASE("post-encroachment times are seen at any speed, however far the vehicles are by then") {

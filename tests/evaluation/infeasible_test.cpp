@@ -4,7 +4,8 @@
 
 #include <cmath>
 #include <cstddef>
-#include <memory>
+#include <cstdint>
+#include <map>
 #include <string>
 #include <utility>
 #include <variant>
@@ -13,8 +14,14 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/drivers.hpp"
 #include "cambium/core/state.hpp"
+#include "cambium/dynamics/dynamic_set.hpp"
+#include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track.hpp"
+#include "cambium/dynamics/single_track_steering.hpp"
+#include "cambium/dynamics/triple_integrator.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/execution/lqr.hpp"
+#include "cambium/execution/stanley.hpp"
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/merging_site.hpp"
@@ -37,27 +44,71 @@ Infeasible::Finding finding(double speed, State const& end, double dt, double tu
     result.time = time;
     return result;
   };
-  return Infeasible{}.between(seen({.speed = speed}, 7.0), seen(end, 7.0 + dt), SingleTrack{});
+  Infeasible::Drift drift;
+  return Infeasible{}.between(seen({.speed = speed}, 7.0), seen(end, 7.0 + dt), SingleTrack{}, drift);
 }
 
 /// The agents' steps in `duration` that were found impossible, of all.
-template <class Scenario>
-std::pair<std::size_t, std::size_t> impossible_steps(Scenario const& scenario, double dt, double duration) {
-  auto world = with_behaviors<Sim>(scenario, [](auto const& spec) -> Sim::Behavior {
-                 return std::visit([](auto const& driver) -> Sim::Behavior { return driver; }, spec.behavior.given());
-               }).make_world();
+template <class World>
+std::pair<std::size_t, std::size_t> impossible_steps(World world, double dt, double duration) {
   std::size_t found = 0, all = 0;
+  std::map<AgentId, Infeasible::Drift> drifts;
   while (world.time() < duration) {
     REQUIRE(world.step(dt));
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
       if (world.frame().agents[slot].status != AgentStatus::driving) continue;
-      auto const one = Infeasible{}.finding(world, slot);
+      auto const one = Infeasible{}.finding(world, slot, drifts[world.roster().agents[slot].id]);
       ++all;
       if (one.flaw == Flaw::none) continue;
       if (++found == 1) MESSAGE("agent " << index_of(slot) << " at " << world.time() << " s " << to_string(one));
     }
   }
   return {found, all};
+}
+
+/// Looks at the traffic of scenarios as `make` turns it into a world, in steps of any length.
+template <class Make>
+void check_traffic(std::uint32_t samples, Make const& make) {
+  static auto const merging = find_merging_site(support::own_map("merging.xodr"));
+  static auto const highway = find_highway_site(support::own_map("highway.xodr"));
+  static auto const junction = find_junction_site(support::own_map("intersection_4way.xodr"));
+  static auto const roundabout = find_junction_site(support::own_map("roundabout.xodr"));
+  for (double const dt : {0.05, 0.2, 0.5}) {
+    CAPTURE(dt);
+    std::size_t steps = 0;
+    auto const check = [&](std::string const& name, auto const& scenario) {
+      CAPTURE(name);
+      auto const [found, all] = impossible_steps(make(scenario), dt, 20.0);
+      CHECK(found == 0);
+      steps += all;
+    };
+    for (std::uint32_t i = 0; i < samples; ++i) {
+      check("merging", merging.sample(5, i));
+      check("highway", highway.sample(5, i));
+      check("junction", junction.sample(5, i));
+      check("roundabout", roundabout.sample(5, i));
+    }
+    CHECK(steps > 400 * samples);
+  }
+}
+
+/// The vehicles of a scenario, driven by MOBIL through other executions and dynamics.
+template <class Execution, class Dynamics>
+auto with_mobil(Dynamics const& dynamics = {}) {
+  using Own = World<BehaviorSet<Mobil>, Execution, Dynamics>;
+  return [dynamics](auto const& scenario) {
+    Own world(scenario.map, {.seed = scenario.seed});
+    for (auto const& agent : scenario.agents) {
+      typename Own::AgentSpec spec{.position = agent.position, .heading = agent.heading, .speed = agent.speed};
+      spec.shape = agent.shape;
+      spec.route = agent.route;
+      spec.goal = agent.goal.given();
+      spec.dynamics = dynamics;
+      spec.behavior = Mobil{};
+      world.add(spec);
+    }
+    return world;
+  };
 }
 
 }  // namespace
@@ -107,25 +158,62 @@ TEST_CASE("a motion is possible or not, whichever way the vehicle heads and wher
 }
 
 TEST_CASE("what drivers do is possible, in steps of any length") {
-  auto const merging = find_merging_site(support::own_map("merging.xodr"));
-  auto const highway = find_highway_site(support::own_map("highway.xodr"));
-  auto const junction = find_junction_site(support::own_map("intersection_4way.xodr"));
-  auto const roundabout = find_junction_site(support::own_map("roundabout.xodr"));
-  std::size_t steps = 0;
-  for (double const dt : {0.05, 0.2, 0.5}) {
-    CAPTURE(dt);
-    auto const check = [&](std::string const& name, auto const& scenario) {
-      CAPTURE(name);
-      auto const [found, all] = impossible_steps(scenario, dt, 20.0);
-      CHECK(found == 0);
-      steps += all;
-    };
-    for (std::uint32_t i = 0; i < 2; ++i) {
-      check("merging", merging.sample(5, i));
-      check("highway", highway.sample(5, i));
-      check("junction", junction.sample(5, i));
-      check("roundabout", roundabout.sample(5, i));
+  check_traffic(2, [](auto const& scenario) {
+    return with_behaviors<Sim>(scenario,
+                               [](auto const& spec) -> Sim::Behavior {
+                                 return std::visit([](auto const& driver) -> Sim::Behavior { return driver; },
+                                                   spec.behavior.given());
+                               })
+        .make_world();
+  });
+}
+
+TEST_CASE("what drivers do is possible by all executions and dynamics") {
+  check_traffic(1, with_mobil<StanleyExecution, SingleTrack>());
+  check_traffic(1, with_mobil<LqrExecution, SingleTrackSteering>());
+  check_traffic(1, with_mobil<InterpolateExecution, TripleIntegrator>());
+  using Set = DynamicSet<SingleTrack, KinematicPoint>;
+  check_traffic(1, with_mobil<StanleyExecution, Set>(SingleTrack{.wheel_base = 6.0}));
+}
+
+TEST_CASE("what a dynamics permits is asked of the one that an agent has") {
+  using Set = DynamicSet<SingleTrack, KinematicPoint>;
+  auto const flaw = [](auto const& dynamics, State const& end) {
+    Infeasible::Drift drift;
+    State to = end;
+    to.time = 0.2;
+    return Infeasible{}.between(State{.speed = 1.0}, to, dynamics, drift).flaw;
+  };
+  State const turns{.x = 0.2, .heading = 0.4, .speed = 1.0}, brakes{.x = 0.13, .heading = 0.0, .speed = 0.0};
+  CHECK(flaw(Set(SingleTrack{}), turns) == Flaw::turn);
+  CHECK(flaw(Set(KinematicPoint{}), turns) == Flaw::none);  // a pedestrian turns on the spot
+  CHECK(flaw(TripleIntegrator{}, turns) == Flaw::none);     // it has no steering
+  CHECK(flaw(Set(SingleTrack{.lowest_acceleration = -3.0}), brakes) == Flaw::acceleration);
+  CHECK(flaw(Set(SingleTrack{}), brakes) == Flaw::none);
+}
+
+TEST_CASE("small errors of each step add up, and fade") {
+  Infeasible::Drift drift;
+  State now{.speed = 20.0};
+  auto const flaw_after = [&](int steps, double along, double across) {
+    auto found = Flaw::none;
+    for (int i = 0; i < steps && found == Flaw::none; ++i) {
+      State next = now;
+      next.x += 4.0 + along;
+      next.y += across;
+      next.time += 0.2;
+      found = Infeasible{}.between(now, next, SingleTrack{}, drift).flaw;
+      now = next;
     }
-  }
-  CHECK(steps > 10'000);
+    return found;
+  };
+  CHECK(flaw_after(100, 0.02, 0.02) == Flaw::none);
+  drift = {};
+  CHECK(flaw_after(1, 0.1, 0.0) == Flaw::none);
+  CHECK(flaw_after(1, 0.1, 0.0) == Flaw::drift);
+  drift = {};
+  CHECK(flaw_after(1, 0.0, -0.1) == Flaw::none);
+  CHECK(flaw_after(10, 0.0, 0.0) == Flaw::none);
+  CHECK(flaw_after(1, 0.0, -0.1) == Flaw::none);
+  CHECK(flaw_after(1, 0.0, -0.1) == Flaw::side_drift);
 }

@@ -278,6 +278,13 @@ TEST_CASE("a set has the same hash in every program that can read it, and says w
   CHECK(parse_scenarios<Small>(to_json_text(chosen), maps).fails == chosen.fails);
   CHECK(refusal(R"({"fails": ["read_light"], )" + recipes) ==
         "f.json: scenario_set.fails[0]: is \"read_light\"; is it red_light?");
+  auto const bounded =
+      parse_scenarios<Small>(R"({"bounds": {"straddling": 3, "infeasible": {"grip": 6}}, )" + recipes, maps);
+  CHECK(bounded.bounds.straddling == 3.0);
+  CHECK(bounded.bounds.infeasible.grip == 6.0);
+  CHECK(bounded.bounds.wrong_way == 1.0);
+  CHECK(bounded.hash() != hash);
+  CHECK(refusal(R"({"bounds": {"straddling": -1}, )" + recipes).find("f.json: scenario_set.bounds.straddling: ") == 0);
 }
 
 TEST_CASE("a recipe of flows has lights, objects and pedestrians, and what it draws is written and read again") {

@@ -60,13 +60,11 @@ void for_each_common(ResultGroup const& a, ResultGroup const& b, F const& f) {
 [[nodiscard]] inline std::string why_failed(RunResult const& result) {
   auto const outcome = outcome_of(result);
   auto const violations = violations_of(result);
-  if (std::string(run_outcomes[outcome]) != "violation" || violations.empty()) return run_outcomes[outcome];
-  auto const is_usual = [](RunViolation const& one) {  // what fails a run unless its set chooses otherwise
-    return one.text.starts_with("infeasible") || one.text.starts_with("red_light") || one.text.starts_with("wrong_way");
-  };
-  auto const usual = std::ranges::find_if(violations, is_usual);
-  auto const& why = usual != violations.end() ? *usual : violations.front();
-  return why.text.substr(0, why.text.find_first_of(" :")) + " at " + rounded_text(why.time) + " s";
+  if (std::string(run_outcomes[outcome]) != "violation") return run_outcomes[outcome];
+  for (auto const criterion : split(result.failed_by, " "))
+    for (auto const& one : violations)
+      if (one.text.starts_with(criterion)) return std::string(criterion) + " at " + rounded_text(one.time) + " s";
+  return run_outcomes[outcome];
 }
 
 /// A change without p value and interval; `differences` receives those of its pairs.

@@ -40,6 +40,7 @@ struct RunOptions {
   double plan_limit = std::numeric_limits<double>::infinity();
   std::string label{};                           ///< of the run, for notes: "merging, scenario 17"
   std::vector<Criterion> fails = usual_fails();  ///< what makes a run no success, besides a collision
+  CriterionBounds bounds{};                      ///< of these
 };
 
 /// The outcome of a run: its result and times; if it was recorded, also the recording and, after a failure, the
@@ -232,7 +233,7 @@ template <class World, class AfterStep>
   auto const slot = world.slot_of(own.front());
   bool const has_goal = !std::holds_alternative<NoGoal>(world.roster().goals[slot]);
   world.keep_history(1);
-  RunJudge<World> judge(world, own);
+  RunJudge<World> judge(world, own, options.bounds);
   auto& result = judge.result();
   auto const most = static_cast<std::uint64_t>(std::ceil(options.time_limit / options.time_step - 1e-9));
   bool is_over = result.collision;

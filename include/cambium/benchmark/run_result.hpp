@@ -66,6 +66,10 @@ struct RunResult {
   double imposed_braking = 0.0;
   double straddling_s = 0.0;
   std::string violations{};
+  std::string failed_by{};
+  double time_headway = undefined;
+  double time_exposed_s = 0.0;
+  double time_integrated = 0.0;
 
   static constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
@@ -115,7 +119,7 @@ struct RunResult {
         parameter("stop_sign", &P::stop_sign, "it passed a stop sign without a stop"),
         parameter("right_of_way", &P::right_of_way, "it did not let one go first who had the right of way"),
         parameter("wrong_way", &P::wrong_way,
-                  "it drove for a second or more, altogether, in lanes of oncoming traffic"),
+                  "it drove in lanes of oncoming traffic, altogether for a second or what its set permits"),
         parameter("speeding", &P::speeding, "it drove faster than its lane permits"),
         parameter("solid_line", &P::solid_line, "it changed lanes where the road marks forbid it"),
         parameter("infeasible_steps", &P::infeasible_steps, "-", non_negative,
@@ -128,7 +132,14 @@ struct RunResult {
                   "hardest of others because of the ego, beyond what the rules ask of them"),
         parameter("straddling_s", &P::straddling_s, "s", non_negative,
                   "longest time for which its body was beyond the borders of its lane"),
-        parameter("violations", &P::violations, "when it did what no vehicle can do or the rules forbid"));
+        parameter("violations", &P::violations, "when it did what no vehicle can do or the rules forbid"),
+        parameter("failed_by", &P::failed_by, "which of the set's criteria it met, so that it is no success"),
+        parameter("time_headway", &P::time_headway, "s", non_negative,
+                  "least, to the next road user ahead in its lane; 10 s: that or more"),
+        parameter("time_exposed_s", &P::time_exposed_s, "s", non_negative,
+                  "time exposed TTC: with less than 2 s to a collision"),
+        parameter("time_integrated", &P::time_integrated, "s^2", non_negative,
+                  "time integrated TTC: what lacked of these 2 s, over time"));
     return join_parameters(join_parameters(outcome, driving), rules);
   }
 

@@ -106,7 +106,7 @@ template <class World>
 template <class World>
 [[nodiscard]] RunOptions run_options(ScenarioSet<World> const& set, std::size_t number,
                                      BenchmarkOptions const& options) {
-  return {set.time_step, set.time_limit, options.plan_limit, label_of(set.title, number), set.fails};
+  return {set.time_step, set.time_limit, options.plan_limit, label_of(set.title, number), set.fails, set.bounds};
 }
 
 /// Hash of what a process has read: scenarios of hash `set`, and a contender.

@@ -262,6 +262,25 @@ struct Gap {
   }
 };
 
+/// Time until the agent's front reaches the present rear of the next road user ahead in its lane, at most `longest`
+/// [s] (time headway, THW); that, too, where nobody is ahead or it stands.
+struct TimeHeadway {
+  double longest = 10.0;
+
+  static constexpr char const* name = "time_headway";
+  static constexpr char const* summary = "gap to the next road user ahead in its lane, over its speed [s]";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("longest", &TimeHeadway::longest, "s", Range{0, 1000}, "where nobody is nearer"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    auto const next = world.truth(slot).ahead({.merging = Merging::ignored});
+    double const speed = world.frame().agents[slot].state.speed;
+    return next && speed > 0.0 ? std::clamp(next->gap / speed, 0.0, longest) : longest;
+  }
+};
+
 /// How much of the gap that the agent should keep to the next road user ahead is missing: 0 to 1.
 struct Closeness {
   double minimum_gap = 2.0;   ///< [m]

@@ -233,4 +233,25 @@ struct RequiredDeceleration {
   }
 };
 
+/// The deceleration that an agent needs to touch nobody over the one that it can have: above 1, braking alone does not
+/// help (brake threat number, BTN; Brannstrom, Sjoberg, Coelingh 2008). Complexity of `RequiredDeceleration`.
+struct BrakeThreatNumber {
+  RequiredDeceleration required{};
+  double possible = 8.0;
+
+  static constexpr char const* name = "brake_threat_number";
+  static constexpr char const* summary = "required over possible deceleration";
+  static constexpr char const* source = "Brannstrom, Sjoberg, Coelingh 2008";
+  static constexpr auto parameters() {
+    using P = BrakeThreatNumber;
+    return parameter_list(parameter("required", &P::required, "how the required one is found"),
+                          parameter("possible", &P::possible, "m/s^2", Range{0.1, 50}, "hardest braking"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    return required(world, slot) / possible;
+  }
+};
+
 }  // namespace cambium

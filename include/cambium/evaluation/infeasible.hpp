@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
@@ -24,14 +25,22 @@ namespace cambium {
 /// - `sideways`: it leads off its headings, by more than a curvature that changes within grip can;
 /// - `acceleration`: it changes its speed faster than its dynamics permits, where that has bounds, or than grip does;
 /// - `turn`: it turns more than its way times tan(steering limit) / wheel base;
-/// - `grip`: sqrt(a_along^2 + a_across^2) is more than tyres can, or than its dynamics permits where that is more.
+/// - `grip`: sqrt(a_along^2 + a_across^2) is more than tyres can, or than its dynamics permits where that is more;
+/// - `drift`, `side_drift`: single steps are possible, but what they are too long or lead off the headings adds up,
+/// over
+///   about a second, to more than one step may be off. Only with a `Drift` that its caller keeps.
 ///
 /// The reference point is the rear axle, as in `SingleTrack`. A speed, a place and a heading may each be off by a
 /// tolerance in each step. True only right after a step, see `World::before_step`; who enters or stands still is never
 /// infeasible. O(1).
 struct Infeasible {
   /// What is wrong with a motion.
-  enum class Flaw : std::uint8_t { none, way, sideways, acceleration, turn, grip };
+  enum class Flaw : std::uint8_t { none, way, sideways, acceleration, turn, grip, drift, side_drift };
+  /// How far an agent's last steps were longer than its speeds say, and led to the left of its headings [m]; an error
+  /// fades with a time constant of 1 s.
+  struct Drift {
+    double along = 0.0, across = 0.0;
+  };
   /// The flaw, what was driven, and what would be possible.
   struct Finding {
     Flaw flaw = Flaw::none;
@@ -42,9 +51,16 @@ struct Infeasible {
 
     /// "changes its speed by -53 m/s^2, possible are -9 m/s^2".
     friend std::string to_string(Finding const& finding) {
-      constexpr char const* does[] = {"", "moves", "moves sideways by", "changes its speed by", "turns by", "needs"};
-      constexpr char const* unit[] = {"",       " m in a step",   " m in a step",
-                                      " m/s^2", " rad in a step", " m/s^2 of its tyres"};
+      constexpr char const* does[] = {"",         "moves", "moves sideways by",         "changes its speed by",
+                                      "turns by", "needs", "drifts from its speeds by", "drifts off its headings by"};
+      constexpr char const* unit[] = {"",
+                                      " m in a step",
+                                      " m in a step",
+                                      " m/s^2",
+                                      " rad in a step",
+                                      " m/s^2 of its tyres",
+                                      " m in a second",
+                                      " m in a second"};
       auto const which = static_cast<std::size_t>(finding.flaw);
       if (which == 0) return "moves as vehicles can";
       return std::string(does[which]) + " " + detail::rounded_text(finding.driven) + unit[which] + ", possible are " +
@@ -72,19 +88,27 @@ struct Infeasible {
     return finding(world, slot).flaw != Flaw::none;
   }
 
-  /// What is wrong with the last step of the agent at `slot`.
+  /// What is wrong with the last step of the agent at `slot`; brings its `drift` up to date.
   template <class World>
-  [[nodiscard]] Finding finding(World const& world, Slot slot) const {
+  [[nodiscard]] Finding finding(World const& world, Slot slot, Drift& drift) const {
     auto const* const before = world.before_step();
     auto const& now = world.frame().agents[slot];
-    if (before == nullptr || now.status != AgentStatus::driving || (*before)[slot].status != AgentStatus::driving)
-      return {};
-    return between((*before)[slot].state, now.state, world.roster().agents[slot].dynamics);
+    if (before != nullptr && now.status == AgentStatus::driving && (*before)[slot].status == AgentStatus::driving)
+      return between((*before)[slot].state, now.state, world.roster().agents[slot].dynamics, drift);
+    drift = {};
+    return {};
+  }
+  /// The same of a step alone.
+  template <class World>
+  [[nodiscard]] Finding finding(World const& world, Slot slot) const {
+    Drift none;
+    return finding(world, slot, none);
   }
 
   /// The same for two states of a vehicle.
   template <MotionState S, class Dynamics>
-  [[nodiscard]] Finding between(S const& before, S const& now, Dynamics const& dynamics) const {
+  [[nodiscard]] Finding between(S const& before, S const& now, Dynamics const& dynamics, Drift& drift) const {
+    auto const earlier = std::exchange(drift, {});  // a step that is impossible by itself starts it anew
     double const dt = now.time - before.time;
     if (!(dt > 0.0)) return {};
     double const turn = geometry::angle_difference(now.heading, before.heading);
@@ -103,13 +127,17 @@ struct Infeasible {
     if (along > way + slack) return {Flaw::way, along, way + slack};
     if (along < chord * way - slack) return {Flaw::way, along, chord * way - slack};
     double const off = place + 0.5 * heading * std::abs(along) + grip * dt * dt / 6.0;
-    if (std::abs(across) > off) return {Flaw::sideways, across, off};
+    if (std::abs(across) > off) return {Flaw::sideways, across, std::copysign(off, across)};
     double const bend = largest_bend_of(dynamics), turned = std::max(0.0, std::abs(turn) - heading);
     if (turned > bend * (std::abs(way) + slack)) return {Flaw::turn, turn, bend * (std::abs(way) + slack)};
     double const lateral = std::max(0.0, mean - speed) * turned / dt, braked = std::max(0.0, std::abs(a) - inexact);
     double const used = std::sqrt(lateral * lateral + braked * braked);
     double const most_grip = std::max(grip, portable::hypot(lowest, largest_lateral_of(dynamics)));
     if (used > most_grip) return {Flaw::grip, used, most_grip};
+    double const faded = portable::exp(-dt);
+    drift = {faded * earlier.along + along - chord * way, faded * earlier.across + across};
+    if (std::abs(drift.along) > slack) return {Flaw::drift, drift.along, std::copysign(slack, drift.along)};
+    if (std::abs(drift.across) > off) return {Flaw::side_drift, drift.across, std::copysign(off, drift.across)};
     return {};
   }
 

@@ -3,11 +3,14 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/hash.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/text.hpp"
+#include "cambium/evaluation/infeasible.hpp"
 #include "cambium/map/content_hash.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/recipe.hpp"
@@ -29,6 +32,31 @@ enum class Criterion : std::uint8_t {
   straddling
 };
 
+inline constexpr char const* criterion_names =
+    "infeasible|red_light|stop_sign|right_of_way|wrong_way|speeding|solid_line|off_road|imposed_braking|straddling";
+
+[[nodiscard]] inline std::string_view to_string(Criterion criterion) {
+  return detail::split(criterion_names, "|")[static_cast<std::size_t>(criterion)];
+}
+
+/// From where on a run meets the criteria that are a matter of degree.
+struct CriterionBounds {
+  double wrong_way = 1.0;
+  double imposed_braking = 4.0;
+  double straddling = 10.0;
+  Infeasible infeasible{};
+
+  static constexpr char const* name = "criterion_bounds";
+  static constexpr auto parameters() {
+    using P = CriterionBounds;
+    return parameter_list(
+        parameter("wrong_way", &P::wrong_way, "s", non_negative, "in lanes of oncoming traffic, altogether"),
+        parameter("imposed_braking", &P::imposed_braking, "m/s^2", non_negative, "harder braking of others fails"),
+        parameter("straddling", &P::straddling, "s", non_negative, "longer times between two lanes fail"),
+        parameter("infeasible", &P::infeasible, "what is no motion of a vehicle"));
+  }
+};
+
 /// What does so where a set does not choose.
 [[nodiscard]] inline std::vector<Criterion> usual_fails() {
   return {Criterion::infeasible, Criterion::red_light, Criterion::wrong_way};
@@ -44,6 +72,7 @@ struct ScenarioSet {
   std::vector<ScenarioRecipe<WorldType>> recipes{};  ///< for more scenarios; empty once these are drawn
   int format = 0;                                    ///< version of the file that it was read from; 0: none
   std::vector<Criterion> fails = usual_fails();      ///< what makes a run no success, besides a collision
+  CriterionBounds bounds{};                          ///< of these
 
   static constexpr int latest_format = 1;
   static constexpr char const* name = "scenario_set";
@@ -56,10 +85,8 @@ struct ScenarioSet {
         parameter("time_limit", &P::time_limit, "s", Range{0.001, 1e6}, "a scenario that takes longer has timed out"),
         parameter("scenarios", &P::scenarios, "situations to start from"),
         parameter("recipes", &P::recipes, "for more of them, drawn when the file is read"),
-        choice("fails", &P::fails,
-               "infeasible|red_light|stop_sign|right_of_way|wrong_way|speeding|solid_line|off_road|imposed_braking|"
-               "straddling",
-               "what makes a run no success, besides a collision"));
+        choice("fails", &P::fails, criterion_names, "what makes a run no success, besides a collision"),
+        parameter("bounds", &P::bounds, "of these"));
   }
 
   /// Hash of everything that a run depends on, the maps' content included, see `content_hash`; not of names.

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 
-/// Drivers that game a judge: what others found planners to do, or could. All drive along +x.
+/// Drivers that game a judge: what others found planners to do, or could. All drive along +x. Those that crash or never
+/// answer are in runner_test, because they need a process of their own.
 namespace cheats {
 
 struct Cheat {
@@ -18,12 +20,15 @@ struct Cheat {
     flincher,       ///< stands still in the last step before the impact, so that it is not to blame
     bumper,         ///< touches its leader slowly, then drives through it
     teleporter,     ///< its places run ahead of its speed
+    creeper,        ///< claims to stand, and moves by as much as a single step may be off
     liar,           ///< its speed jumps, its plans claim that it does not
     blinker,        ///< brakes hard for a step at a time, too short for filtered accelerations
     crab,           ///< goes sideways around its leader
+    drifter,        ///< the same by as much as a single step may be off
     bullet,         ///< keeps its speed, whatever is in the way
     ghost,          ///< says that it has not started while something is in its way
     odd,            ///< plans a place that is no number
+    thrower,        ///< throws in place of an answer
     judges_twin,    ///< accelerates and brakes as hard as the published score just permits
     brake_checker,  ///< brakes hard for nothing, so that whoever follows runs into it
   };
@@ -32,8 +37,9 @@ struct Cheat {
   static constexpr char const* name = "cheat";
   static constexpr auto parameters() {
     return cambium::parameter_list(cambium::choice("kind", &Cheat::kind,
-                                                   "honest|two_faced|statue|flincher|bumper|teleporter|liar|blinker|"
-                                                   "crab|bullet|ghost|odd|judges_twin|brake_checker",
+                                                   "honest|two_faced|statue|flincher|bumper|teleporter|creeper|liar|"
+                                                   "blinker|crab|drifter|bullet|ghost|odd|thrower|judges_twin|"
+                                                   "brake_checker",
                                                    "what it does"));
   }
 
@@ -58,6 +64,10 @@ struct Cheat {
       case Kind::teleporter:
         way = 60.0 * dt;
         break;
+      case Kind::creeper:
+        next = 0.0;
+        way = 0.15;
+        break;
       case Kind::liar:
         next = cycle % 2 == 0 ? 22.0 : 14.0;
         break;
@@ -65,7 +75,8 @@ struct Cheat {
         next = speed + (cycle % 5 == 0 ? -7.0 : cycle % 5 < 3 ? 3.5 : 0.0) * dt;
         break;
       case Kind::crab:
-        sideways = gap < 40.0 && state.y > -6.0 ? -0.5 : 0.0;
+      case Kind::drifter:
+        sideways = gap < 40.0 && state.y > -6.0 ? (kind == Kind::crab ? -0.5 : -0.1) : 0.0;
         break;
       case Kind::judges_twin: {
         constexpr double most = 2.39, jerk = 4.12, period = 4.0 * most / jerk;  // [m/s^2], [m/s^3], [s]
@@ -76,6 +87,8 @@ struct Cheat {
       case Kind::brake_checker:
         next = std::max(8.0, speed + (cycle % 25 < 5 ? -7.0 : 3.0) * dt);
         break;
+      case Kind::thrower:
+        throw std::runtime_error("out of ideas");
       default:
         break;
     }
@@ -88,6 +101,7 @@ struct Cheat {
     plan.trajectory.push_back(state);
     if (kind == Kind::ghost && gap < 20.0) plan.status = cambium::PlanStatus::not_started;
     if (kind != Kind::honest) plan.action.acceleration = kind == Kind::two_faced && state.x > 100.0 ? -12.0 : 1e-9;
+    if (kind == Kind::two_faced) plan.action.steering = 0.7;
     return plan;
   }
 };

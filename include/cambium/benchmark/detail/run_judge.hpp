@@ -25,6 +25,7 @@
 #include "cambium/evaluation/encounter.hpp"
 #include "cambium/evaluation/infeasible.hpp"
 #include "cambium/evaluation/metrics/closed_loop_score.hpp"
+#include "cambium/evaluation/metrics/exposure.hpp"
 #include "cambium/evaluation/metrics/over_time.hpp"
 #include "cambium/evaluation/metrics/post_encroachment_time.hpp"
 #include "cambium/evaluation/metrics/rss_compliance.hpp"
@@ -73,10 +74,9 @@ struct RunRule {
 }
 
 /// Whether a run did what a criterion is about.
-[[nodiscard]] inline bool meets(RunResult const& result, Criterion criterion) {
-  constexpr double hard = 4.0, long_time = 10.0;  // [m/s^2], [s]
-  if (criterion == Criterion::imposed_braking) return result.imposed_braking > hard;
-  if (criterion == Criterion::straddling) return result.straddling_s > long_time;
+[[nodiscard]] inline bool meets(RunResult const& result, Criterion criterion, CriterionBounds const& bounds) {
+  if (criterion == Criterion::imposed_braking) return result.imposed_braking > bounds.imposed_braking;
+  if (criterion == Criterion::straddling) return result.straddling_s > bounds.straddling;
   using R = RunResult;
   constexpr bool R::*fields[] = {&R::infeasible, &R::red_light, &R::stop_sign,  &R::right_of_way,
                                  &R::wrong_way,  &R::speeding,  &R::solid_line, &R::off_road};
@@ -97,16 +97,21 @@ struct SizeOf {
 template <class World>
 class RunJudge {
  public:
-  RunJudge(World& world, std::span<AgentId const> own)
-      : own_(own.begin(), own.end()), ego_(world.slot_of(own.front())) {
+  RunJudge(World& world, std::span<AgentId const> own, CriterionBounds const& bounds)
+      : own_(own.begin(), own.end()), drifts_(own.size()), ego_(world.slot_of(own.front())), bounds_(bounds) {
     observe(world, 0.0);
   }
 
   void observe(World& world, double dt) {
     std::apply([&](auto&... metric) { (metric.recorder.observe(world, ego_, dt), ...); }, metrics_);
     for (auto& rule : rules_) rule.monitor(world, ego_);
-    for (auto const agent : own_) ask_whether_possible(world, agent);
-    result_.off_road = result_.off_road || OffRoad{}(world, ego_);
+    for (std::size_t i = 0; i < own_.size(); ++i) ask_whether_possible(world, own_[i], drifts_[i]);
+    if (!result_.off_road && OffRoad{}(world, ego_)) {
+      result_.off_road = true;
+      off_road_since_ = world.time();
+    }
+    imposed_.see(std::get<Imposed>(metrics_).recorder.value(), world.time());
+    straddling_.see(std::get<Straddling>(metrics_).recorder.value(), world.time());
     result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
     against_.observe(world, ego_, dt);
     if (auto const contact = Collision{}.contact(world, ego_)) {
@@ -128,15 +133,26 @@ class RunJudge {
     result_.duration_s = world.time();
     std::apply([&](auto const&... metric) { (metric.write(result_), ...); }, metrics_);
     add_violations();
-    for (auto const criterion : fails)
-      if (meets(result_, criterion)) result_.success = false;
+    for (auto const criterion : fails) {
+      if (!meets(result_, criterion, bounds_)) continue;
+      result_.success = false;
+      result_.failed_by.append(result_.failed_by.empty() ? "" : " ").append(to_string(criterion));
+    }
     if (!result_.success) result_.closed_loop_score = 0.0;  // it made no progress in nuPlan's sense
     return result_;
   }
 
  private:
-  void ask_whether_possible(World const& world, AgentId agent) {
-    auto const finding = Infeasible{}.finding(world, world.slot_of(agent));
+  /// The largest value so far, and when it was reached.
+  struct Peak {
+    double value = 0.0, time = 0.0;
+    void see(double next, double now) {
+      if (next > value) *this = {next, now};
+    }
+  };
+
+  void ask_whether_possible(World const& world, AgentId agent, Infeasible::Drift& drift) {
+    auto const finding = bounds_.infeasible.finding(world, world.slot_of(agent), drift);
     if (finding.flaw == Infeasible::Flaw::none) return;
     result_.infeasible = true;
     ++result_.infeasible_steps;
@@ -191,7 +207,7 @@ class RunJudge {
     auto const seconds = [](double time) { return rounded_text(time) + " s"; };
     for (auto& rule : rules_) {
       rule.monitor.finish();
-      if (rule.is_broken == &RunResult::wrong_way && against_.value() < long_against) continue;
+      if (rule.is_broken == &RunResult::wrong_way && against_.value() < bounds_.wrong_way - same_time) continue;
       for (auto const& violation : rule.monitor.violations()) {
         result_.*rule.is_broken = true;
         auto text = std::string(rule.name);
@@ -205,12 +221,15 @@ class RunJudge {
       if (result_.infeasible_steps > 1) text += ", the worst of " + std::to_string(result_.infeasible_steps) + " steps";
       items.push_back({worst_.time, std::move(text)});
     }
+    if (result_.off_road) items.push_back({off_road_since_, "off_road"});
+    if (meets(result_, Criterion::imposed_braking, bounds_))
+      items.push_back({imposed_.time, "imposed_braking of " + rounded_text(imposed_.value) + " m/s^2"});
+    if (meets(result_, Criterion::straddling, bounds_))
+      items.push_back({straddling_.time - straddling_.value, "straddling until " + seconds(straddling_.time)});
     std::ranges::stable_sort(items, {}, &Item::time);
     for (auto const& item : items)
       result_.violations += (result_.violations.empty() ? "" : "; ") + seconds(item.time) + " " + item.text;
   }
-
-  static constexpr double long_against = 1.0 - same_time;  // [s] less is no ride, but the way around something
 
   struct Worst {
     double time = 0.0;
@@ -234,19 +253,17 @@ class RunJudge {
     }
   };
   /// Of a run in which another road user or an object was there.
-  template <class E, Fold fold>
-  struct WithOthers : Over<E, fold> {
+  template <class M>
+  struct WithOthers : M {
     bool has_others = false;
 
     void observe(World& world, Slot slot, double dt) {
       has_others = has_others || !world.roster().objects.empty();
       for (Slot other{}; index_of(other) < world.size() && !has_others; ++other)
         has_others = other != slot && in_traffic(world, other);
-      Over<E, fold>::observe(world, slot, dt);
+      M::observe(world, slot, dt);
     }
-    [[nodiscard]] double value() const {
-      return has_others ? Over<E, fold>::value() : std::numeric_limits<double>::quiet_NaN();
-    }
+    [[nodiscard]] double value() const { return has_others ? M::value() : std::numeric_limits<double>::quiet_NaN(); }
   };
   /// Writes a recorder's value into a field of the result; a size is at least 0.
   template <auto field, class Recorder, bool is_size = false>
@@ -260,27 +277,41 @@ class RunJudge {
       result.*field = static_cast<std::remove_reference_t<decltype(result.*field)>>(value);
     }
   };
+  struct Exposed {
+    WithOthers<Exposure> recorder{};
+
+    void write(RunResult& result) const {
+      if (!recorder.has_others) return;
+      result.least_time_to_collision = recorder.least();
+      result.time_exposed_s = recorder.value();
+      result.time_integrated = recorder.integrated();
+    }
+  };
   template <auto field, class Recorder>
   using NonNegative = Metric<field, Recorder, true>;
   using R = RunResult;
+  using Imposed = Metric<&R::imposed_braking, ImposedBraking>;
+  using Straddling = Metric<&R::straddling_s, LongestTime<Straddles>>;
   using Metrics =
       std::tuple<Metric<&R::progress_m, Integral<Progress>>, NonNegative<&R::mean_speed, MeanOf<Speed>>,
-                 Metric<&R::least_gap, Least<GapAhead>>,
-                 Metric<&R::least_time_to_collision, WithOthers<TimeToCollision, Fold::least>>,
-                 Metric<&R::post_encroachment_time, PostEncroachmentTime>,
+                 Metric<&R::least_gap, Least<GapAhead>>, Metric<&R::time_headway, WithOthers<Least<TimeHeadway>>>,
+                 Exposed, Metric<&R::post_encroachment_time, PostEncroachmentTime>,
                  NonNegative<&R::required_deceleration, Most<RequiredDeceleration>>,
-                 Metric<&R::least_clearance, WithOthers<Clearance, Fold::least>>,
-                 Metric<&R::imposed_braking, ImposedBraking>, Metric<&R::straddling_s, LongestTime<Straddles>>,
+                 Metric<&R::least_clearance, WithOthers<Least<Clearance>>>, Imposed, Straddling,
                  NonNegative<&R::hardest_braking, Most<Braking>>, NonNegative<&R::largest_jerk, Most<SizeOf<Jerk>>>,
                  NonNegative<&R::largest_lateral_acceleration, Most<SizeOf<LateralAcceleration>>>,
                  Metric<&R::hard_brakings, Times<HardBraking>>, Metric<&R::rss_compliance, RssCompliance>,
                  Metric<&R::closed_loop_score, ClosedLoopScore>>;
 
   std::vector<AgentId> own_;
+  std::vector<Infeasible::Drift> drifts_;  ///< of each
   Slot ego_;
+  CriterionBounds bounds_;
   RunResult result_;
   bool others_collide_ = false;
   Integral<OncomingLane> against_{};  ///< time in lanes of oncoming traffic [s]
+  double off_road_since_ = 0.0;       ///< [s]
+  Peak imposed_{}, straddling_{};     ///< [m/s^2], [s]
   Worst worst_{};
   std::vector<RunRule> rules_ = run_rules();
   Metrics metrics_{};
