@@ -110,8 +110,7 @@ namespace detail {
 [[nodiscard]] inline std::string distributions(Report const& report, std::vector<std::size_t> const& set) {
   std::string html =
       "<h3>Distributions</h3><p class=\"note\">Box: quartiles and median; line: 5 to 95 %; dots: runs, at most 200, "
-      "the "
-      "extremes among them. \xE2\x88\x9E: runs without a value.</p><div class=\"plots\">\n";
+      "the extremes among them. None: runs without a value.</p><div class=\"plots\">\n";
   for (auto const& measure : measures()) {
     if (measure.is_share || measure.key == "steps" || measure.key == "decisions") continue;
     std::vector<BoxPlotRow> rows;

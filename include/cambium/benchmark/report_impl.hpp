@@ -287,10 +287,13 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
     for (std::size_t begin = 0; begin < means.size(); begin += columns) {
       auto const first = means.begin() + static_cast<std::ptrdiff_t>(begin);
       auto const last = means.begin() + static_cast<std::ptrdiff_t>(std::min(means.size(), begin + columns));
-      add(detail::measure_table(report, set, {first, last}, "means"));
+      bool const is_first = first == means.begin();
+      add(detail::measure_table(report, set, {first, last}, is_first ? "means" : "means, continued"));
+      if (is_first)
+        tables.back().note =
+            "Over scenarios; in brackets: 95 % intervals (bootstrap, BCa); n: scenarios that have the value, where not "
+            "all.";
     }
-    tables.back().note =
-        "In brackets: 95 % intervals (bootstrap, BCa); n: scenarios with a finite value, where not all.";
     add(detail::time_table(report, set));
     if (set.size() < 2) continue;
     for (char const* key : {"success", "closed_loop_score"}) add(detail::difference_table(report, set, key));
@@ -306,11 +309,12 @@ CAMBIUM_COLD std::vector<Table> summary_of(std::vector<ResultGroup> const& group
     return std::ranges::any_of(groups,
                                [&](auto const& group) { return detail::mean_of_measure(group, measure) > 0.0; });
   };
+  auto const is_text = [](Measure const& measure) { return measure.key == "violations" || measure.key == "failed_by"; };
   for (std::size_t m = 0; m < measures().size(); ++m) {
     auto const& measure = measures()[m];
     bool const is_outcome = measure.is_share && m <= measure_index("error");
-    if (is_outcome || (measure.is_share && measure.key != "violations" && occurs(measure)) ||
-        measure.key == "duration_s" || measure.key == "closed_loop_score" || measure.key == "mean_ms")
+    if (is_outcome || (measure.is_share && !is_text(measure) && occurs(measure)) || measure.key == "duration_s" ||
+        measure.key == "closed_loop_score" || measure.key == "mean_ms")
       chosen.push_back(&measure);
   }
   std::vector<Table> tables;

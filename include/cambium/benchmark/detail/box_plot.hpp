@@ -106,9 +106,7 @@ struct PlotAxis {
            "\"><title>" + escape_markup(rows[i].label) + "</title>" + escape_markup(name) + "</text>";
     if (rows[i].not_finite > 0)
       svg += "<text x=\"" + number(width - 38) + "\" y=\"" + number(middle + 4) +
-             "\"><title>runs without a finite value"
-             "</title>" +
-             std::to_string(rows[i].not_finite) + " \xE2\x88\x9E</text>";
+             "\"><title>runs without a value</title>" + std::to_string(rows[i].not_finite) + " none</text>";
     if (values.empty()) continue;
     auto const dots = std::min(static_cast<double>(values.size()), most_dots);
     svg += "<path class=\"dots\" d=\"";
