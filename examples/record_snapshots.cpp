@@ -68,7 +68,7 @@ void drive(Settings const& settings) {
   options.snapshot.map_text = map_text;
   options.watches.push_back([&] { return cb::Collision{}(world, world.slot_of(desk::ego)) ? "ego collides" : ""; });
   options.watches.push_back(
-      [&] { return world.record(desk::ego).action.acceleration < -6.0 ? "ego brakes harder than 6 m/s^2" : ""; });
+      [&] { return world.record(desk::ego).acceleration < -6.0f ? "ego brakes harder than 6 m/s^2" : ""; });
   options.watches.push_back([&]() -> std::string {  // passengers feel more jerk than the planner allows itself
     double const now = world.record(desk::ego).action.acceleration;
     double const duration = cycle.time_step + cycle.late;

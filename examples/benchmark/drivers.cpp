@@ -1,10 +1,6 @@
-#include <algorithm>
-#include <cstddef>
 #include <string>
 #include <utility>
 #include <variant>
-
-#include "cambium/core/text.hpp"
 
 #include "traffic.hpp"
 
@@ -17,13 +13,6 @@ Contender driver(std::string name, std::string parameters, std::uint64_t hash,
   return cb::contender_by<Traffic>(
       std::move(name), std::move(parameters), hash,
       [choose = std::move(choose)](Spec const& ego, cb::Scenario<Traffic> const&) { return choose(ego); }, &freeze);
-}
-
-std::size_t different_parts(std::string const& a, std::string const& b) {
-  auto const in_a = cb::detail::split(a, ", "), in_b = cb::detail::split(b, ", ");
-  std::size_t count = std::max(in_a.size(), in_b.size()) - std::min(in_a.size(), in_b.size());
-  for (std::size_t i = 0; i < std::min(in_a.size(), in_b.size()); ++i) count += in_a[i] != in_b[i];
-  return count;
 }
 
 double desired_speed(Spec const& ego) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -68,29 +67,22 @@ using Contender = cb::Contender<Traffic>;
 [[nodiscard]] Contender driver(std::string name, std::string parameters, std::uint64_t hash,
                                std::function<Tested(Spec const&)> choose);
 
-/// The number of parameters in which two structs of one type differ, by their texts.
-[[nodiscard]] std::size_t different_parts(std::string const& a, std::string const& b);
-
-/// A driver whose parameters are `planner` with what the file says of `name`. Where the file gives no other desired
-/// speed than the planner's own, it has that of the scenario's ego: `set_speed(planner, speed)`.
+/// A driver whose parameters are `planner` with what the file says of `name`. Where the file gives no desired speed, it
+/// has that of the scenario's ego: `set_speed(planner, speed)`.
 template <class Planner, class SetSpeed>
 [[nodiscard]] Contender with_speed(examples::ParameterFile& file, Planner planner, std::string const& name,
                                    SetSpeed set_speed) {
-  auto usual = planner;
+  auto const usual = planner;
   file.take(planner, name);
-  auto const speed_apart = [&](double speed) {  // what the file changes but speeds
-    auto a = usual, b = planner;
-    set_speed(a, speed);
-    set_speed(b, speed);
-    return different_parts(cb::to_string(a), cb::to_string(b));
+  auto const at_speed = [usual, set_speed, name, file](double speed) {
+    auto own = usual;
+    set_speed(own, speed);
+    file.set(own, name);
+    return own;
   };
-  bool const is_given = different_parts(cb::to_string(usual), cb::to_string(planner)) > speed_apart(1.0);
+  file.show(at_speed(1.0), name);  // printed where the file gives it
   return driver(name, cb::to_string(planner), cb::hash_parameters(planner),
-                [planner, set_speed, is_given](Spec const& ego) {
-                  auto own = planner;
-                  if (!is_given) set_speed(own, desired_speed(ego));
-                  return Tested(own);
-                });
+                [at_speed](Spec const& ego) { return Tested(at_speed(desired_speed(ego))); });
 }
 
 // The shipped behaviours; each planner in a source file of its own, because planners take long to compile.

@@ -92,11 +92,20 @@ TEST_CASE("what plans claim changes nothing, whoever claims it") {
 namespace {
 
 /// What evaluators, metrics and rules say of each agent in each step of a world whose drivers are all of one kind.
-std::vector<double> said_of(Kind kind) {
+std::vector<double> said_of(Kind kind, bool at_junction) {
   using Own = Traffic::WithBehaviors<BehaviorSet<Cheat>>;
-  Own world(support::straight_road(2, 500));
-  for (auto const& [x, y, speed] : {std::tuple{30.0, -1.75, 20.0}, {70.0, -1.75, 8.0}, {20.0, -5.25, 18.0}})
-    world.add({.position = {x, y}, .speed = speed, .behavior = Cheat{kind}});
+  Own world(at_junction ? support::own_map("intersection_4way.xodr") : support::straight_road(2, 500));
+  for (std::size_t i = 0; i < world.map().lights().size(); ++i)
+    world.set_light(LightId{static_cast<std::uint32_t>(i)}, {.cycle = 100, .green_begin = 90, .green_end = 100});
+  if (at_junction)
+    for (char const* const road : {"1", "2", "3"}) {
+      auto const& lane = world.map().lane(world.map().find_lane(road, 0.0, -1));
+      auto const pose = lane.path.pose(lane.path.length() - 40.0);
+      world.add({.position = {pose.x, pose.y}, .heading = pose.heading, .speed = 10, .behavior = Cheat{kind}});
+    }
+  else
+    for (auto const& [x, y, speed] : {std::tuple{30.0, -1.75, 20.0}, {70.0, -1.75, 8.0}, {20.0, -5.25, 18.0}})
+      world.add({.position = {x, y}, .speed = speed, .behavior = Cheat{kind}});
   world.keep_history(1);
   auto const evaluators =
       std::tuple<Collision, AtFaultCollision, OffRoad, OncomingLane, Straddles, Infeasible, AtGoal, PastJunctions,
@@ -129,11 +138,14 @@ std::vector<double> said_of(Kind kind) {
 }  // namespace
 
 TEST_CASE("no evaluator, metric or rule reads a plan") {
-  auto const honest = said_of(Kind::honest), lied = said_of(Kind::two_faced);
-  REQUIRE(honest.size() == lied.size());
   auto const same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
-  CHECK(std::ranges::equal(honest, lied, same));
-  CHECK_FALSE(std::ranges::equal(honest, said_of(Kind::blinker), same));  // it sees what is driven
+  for (bool const at_junction : {false, true}) {
+    CAPTURE(at_junction);
+    auto const honest = said_of(Kind::honest, at_junction), lied = said_of(Kind::two_faced, at_junction);
+    REQUIRE(honest.size() == lied.size());
+    CHECK(std::ranges::equal(honest, lied, same));
+    CHECK_FALSE(std::ranges::equal(honest, said_of(Kind::blinker, at_junction), same));  // it sees what is driven
+  }
 }
 
 TEST_CASE("who does not move has no success") {
@@ -202,6 +214,20 @@ TEST_CASE("a braking of one step is on record, raw") {
   CHECK(result.largest_jerk > 35.0);
   CHECK(calm.largest_jerk < 4.0);
   CHECK(result.closed_loop_score <= calm.closed_loop_score - 2.0 / 16.0);
+  auto const strict = judged(Kind::blinker, scene(20), {.fails = {Criterion::discomfort}});
+  CHECK_FALSE(strict.success);
+  CHECK(strict.failed_by == "discomfort");
+  CHECK(says(strict, " s discomfort"));
+  CHECK(judged(Kind::honest, scene(20), {.fails = {Criterion::discomfort}}).success);
+}
+
+TEST_CASE("a stop within the step of the impact hides neither fault nor speed") {
+  auto const result =
+      judged(Kind::late_stopper, scene(7.9, {{30 + length + 2 + 4 * 7.9, -1.75, 0}}), {.time_step = 1.0});
+  CHECK(result.collision);
+  CHECK(result.at_fault);
+  CHECK(result.impact_speed == doctest::Approx(7.9));
+  CHECK_FALSE(result.infeasible);
 }
 
 TEST_CASE("vehicles do not go sideways") {
@@ -224,6 +250,56 @@ TEST_CASE("who crosses another vehicle between two frames has hit it") {
   CHECK(through.collision);
   CHECK(through.at_fault);
   CHECK_FALSE(through.success);
+  for (double const speed : {0.0, 0.06, 5.0}) {  // the fault does not depend on where the frames are
+    auto const passed = judged(Kind::bullet, scene(30, {{69, -1.75, speed}}), {.time_step = 1.0});
+    CAPTURE(speed);
+    CHECK(passed.collision);
+    CHECK(passed.at_fault);
+    CHECK(passed.least_time_to_collision == 0.0);
+    CHECK(passed.least_clearance == 0.0);
+  }
+}
+
+TEST_CASE("who leaves the road at once is judged by the way there") {
+  auto away = scene(20, {{60, -1.75, 0}});
+  away.agents.front().goal = NoGoal{};
+  auto const result = judged(Kind::escaper, away);
+  CHECK_FALSE(result.success);
+  CHECK(result.collision);
+  CHECK(says(result, "agent 0 moves 1000 m in a step"));
+  CHECK_FALSE(judged(Kind::escaper, scene(20)).success);
+}
+
+TEST_CASE("who ends his plans has failed, also an agent that does so for the ego") {
+  auto away = scene(20, {{150, -1.75, 0}});
+  away.agents.front().goal = NoGoal{};
+  auto const result = judged(Kind::quitter, away);
+  CHECK_FALSE(result.success);
+  CHECK(result.error == "agent 0: its plan says that it has nothing more to do, but it drives");
+  auto two = scene(20, {{60, -5.25, 10}, {120, -5.25, 0}});
+  two.controlled = {AgentId{1}};
+  CHECK(judged(Kind::quitter, two).error == "agent 1: its plan says that it has nothing more to do, but it drives");
+}
+
+TEST_CASE("other agents under test are judged, too") {
+  auto ram = scene(10, {{60, -5.25, 10}, {120, -5.25, 0}});
+  CHECK(judged(Kind::bullet, ram).success);
+  ram.controlled = {AgentId{1}};
+  auto const rammed = judged(Kind::bullet, ram);
+  CHECK_FALSE(rammed.success);
+  CHECK(rammed.collision);
+  CHECK(rammed.hit == AgentId{2});
+  CHECK(says(rammed, "s collision by agent 1"));
+  CHECK(rammed.others_collided == 0);
+
+  auto pass = scene(20, {{100, -5.25, 20}}, support::road_with_signal("1000001", 2));
+  pass.agents.front().position = {220, -1.75};
+  pass.controlled = {AgentId{1}};
+  pass.lights = {{.cycle = 100, .green_begin = 90, .green_end = 100}};
+  auto const passed = judged(Kind::bullet, pass);
+  CHECK_FALSE(passed.success);
+  CHECK(passed.red_light);
+  CHECK(says(passed, "s red_light by agent 1"));
 }
 
 TEST_CASE("who vanishes where something is in the way has failed") {
@@ -262,6 +338,7 @@ TEST_CASE("what others had to brake because of the ego is on record, and a crite
   CHECK(judged(Kind::honest, checked, options).success);
   CHECK(judged(Kind::brake_checker, checked, {.fails = options.fails, .bounds = {.imposed_braking = 20.0}}).success);
   CHECK(judged(Kind::honest, checked, options).imposed_braking == 0.0);
+  CHECK(judged(Kind::pulser, scene(20, {{8, -1.75, 20, follower}}), {.time_step = 0.5}).imposed_braking > 4.0);
 
   auto cuts = scene(12, {{15, -1.75, 20, follower}});
   cuts.agents.front().position = {60, -5.25};
@@ -306,21 +383,13 @@ TEST_CASE("a ride against traffic makes a run no success") {
   CHECK(judged(Kind::bullet, scenario, {.bounds = {.wrong_way = 100.0}}).success);
 }
 
-TEST_CASE("who drives to the letter of the score loses by hidden bounds, who drives well does not") {
-  using Own = Traffic::WithBehaviors<BehaviorSet<Cheat>>;
+TEST_CASE("who drives to the letter of the score loses by the hidden bounds of a set, who drives well does not") {
   auto const score = [](Kind kind, double share_of_bounds) {
-    Own world(support::straight_road(1, 500));
-    world.add({.position = {30, -1.75}, .speed = 20, .behavior = Cheat{kind}});
-    world.keep_history(1);
-    ClosedLoopScore metric;
+    RunOptions options{.time_step = 0.1};
     for (double ClosedLoopScore::*bound :
          {&ClosedLoopScore::acceleration, &ClosedLoopScore::deceleration, &ClosedLoopScore::jerk})
-      metric.*bound *= share_of_bounds;
-    for (int i = 0; i < 100; ++i) {
-      REQUIRE(world.step(0.1));
-      metric.observe(world, Slot{0}, 0.1);
-    }
-    return metric.value();
+      options.bounds.score.*bound *= share_of_bounds;
+    return judged(kind, scene(20), options).closed_loop_score;
   };
   CHECK(score(Kind::judges_twin, 1.0) == 1.0);
   CHECK(score(Kind::judges_twin, 0.9) == doctest::Approx(14.0 / 16.0));

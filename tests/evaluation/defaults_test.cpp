@@ -82,6 +82,7 @@ infeasible | grip | 10 | m/s^2 | [0.1, 100]
 infeasible | place | 0.05 | m | [0, 10]
 infeasible | heading | 0.01 | rad | [0, 1]
 infeasible | speed | 0.05 | m/s | [0, 10]
+infeasible | drift | 0.1 | m | [0, 10]
 time_headway | longest | 10 | s | [0, 1000]
 brake_threat_number | required.most | 50 | m/s^2 | [0, 1e+06]
 brake_threat_number | required.longest | 10 | s | [0, 1000]
@@ -93,6 +94,9 @@ exposure | threshold | 2 | s | [0, 1000]
 imposed_braking | comfortable | 2 | m/s^2 | [0, 50]
 imposed_braking | hard | 4 | m/s^2 | [0, 50]
 imposed_braking | memory | 5 | s | [0, 1000]
+imposed_braking | reaction | 2 | s | [0, 1000]
+imposed_braking | horizon | 4 | s | [0, 100]
+imposed_braking | headway | 3 | s | [0, 100]
 )"[1]);
   PostEncroachmentTime const encroachment;
   CHECK(encroachment.longest == 5.0);

@@ -362,6 +362,14 @@ TEST_CASE("a course ends by a collision, off the road, in an oncoming lane, off 
   auto const id = world.add({.position = {40, -1.75}, .heading = 0.0, .speed = 10});
   auto const ego = world.slot_of(id);
   CHECK(course_end(world, ego) == cb::CourseEnd::none);
+  for (double const speed : {0.0, 10.0}) {  // back in its own lane
+    auto const& agent = world.roster().agents[ego];
+    auto at = world.frame().agents[ego].lane;
+    at.heading_error = 3.1;
+    CHECK(cb::OncomingLane::enters(*map, *agent.road, at,
+                                   cb::State{.x = 40, .y = -1.75, .heading = 3.1, .speed = speed},
+                                   agent.shape) == (speed > 0.0));
+  }
   world.set_state(id, {.x = 60, .y = 1.75, .heading = 0.0, .speed = 10});
   CHECK(cb::OncomingLane{}(world, ego));
   CHECK(course_end(world, ego) == cb::CourseEnd::off_road);

@@ -60,15 +60,17 @@ struct Stage {
   /// The ego at slot 0, and another one.
   [[nodiscard]] Sim world(Vehicle const& ego, Vehicle const& other) const {
     Sim made(map);
-    for (auto const& vehicle : {ego, other}) {
-      auto const place = at(vehicle.x - 1.5 * std::cos(vehicle.heading), vehicle.y - 1.5 * std::sin(vehicle.heading));
-      made.add({.position = place,
-                .heading = turn + vehicle.heading,
-                .speed = vehicle.speed,
-                .shape = body,
-                .behavior = ConstantAcceleration{}});
-    }
+    for (auto const& vehicle : {ego, other}) add(made, vehicle);
     return made;
+  }
+
+  void add(Sim& world, Vehicle const& vehicle) const {
+    auto const place = at(vehicle.x - 1.5 * std::cos(vehicle.heading), vehicle.y - 1.5 * std::sin(vehicle.heading));
+    world.add({.position = place,
+               .heading = turn + vehicle.heading,
+               .speed = vehicle.speed,
+               .shape = body,
+               .behavior = ConstantAcceleration{}});
   }
 };
 
@@ -128,6 +130,38 @@ TEST_CASE("a vehicle that crosses: they meet, or one passes before the other") {
     CHECK(own.value() == doctest::Approx(0.9625).epsilon(0.015));
     CHECK(its.value() == own.value());
   });
+}
+
+TEST_CASE("a car that cuts in 2 m ahead, and a leader that brakes from the same speed") {
+  from_anywhere([](Stage const& stage) {
+    auto cut = stage.world({0, 0, 0, 20}, {7, 0, 0, 15});
+    CHECK(TimeToCollision{}(cut, Slot{0}) == doctest::Approx(0.4).epsilon(0.01));
+    CHECK(RequiredDeceleration{}(cut, Slot{0}) == doctest::Approx(6.25).epsilon(0.03));
+    auto equal = stage.world({0, 0, 0, 20}, {15, 0, 0, 20});  // at present speeds they never meet
+    CHECK(TimeToCollision{}(equal, Slot{0}) == 10.0);
+    CHECK(RequiredDeceleration{}(equal, Slot{0}) == 0.0);
+  });
+}
+
+TEST_CASE("who touches has no time left, wherever; who comes later asks for nothing") {
+  from_anywhere([](Stage const& stage) {
+    auto struck = stage.world({0, 0, 0, 10}, {-4.9, 0, 0, 15});
+    CHECK(Collision{}(struck, Slot{0}));
+    CHECK(TimeToCollision{}(struck, Slot{0}) == 0.0);
+    CHECK(Clearance{}(struck, Slot{0}) == 0.0);
+  });
+}
+
+TEST_CASE("the required deceleration does not depend on the order of the others") {
+  Stage const stage(0.7, 0.0);
+  Vehicle const ego{0, 0, 0, 20}, leader{29.5, 0, 0, 10}, crosser{20, -15.4, right, 10};
+  auto const alone = [&](Vehicle const& other) { return RequiredDeceleration{}(stage.world(ego, other), Slot{0}); };
+  double const most = std::max(alone(leader), alone(crosser));
+  for (bool const is_first : {true, false}) {
+    auto world = stage.world(ego, is_first ? leader : crosser);
+    stage.add(world, is_first ? crosser : leader);
+    CHECK(RequiredDeceleration{}(world, Slot{0}) == most);
+  }
 }
 
 TEST_CASE("exposure to a collision: for how long the time to it is short, and by how much") {

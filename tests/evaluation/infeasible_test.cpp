@@ -176,6 +176,32 @@ TEST_CASE("what drivers do is possible by all executions and dynamics") {
   check_traffic(1, with_mobil<StanleyExecution, Set>(SingleTrack{.wheel_base = 6.0}));
 }
 
+TEST_CASE("lane changes in bends are possible, in steps of any length") {
+  for (double const curvature : {0.02, 0.05})
+    for (double const dt : {0.02, 0.05, 0.2, 0.5}) {
+      CAPTURE(curvature);
+      CAPTURE(dt);
+      double const speed = 0.3 / curvature;
+      for (auto const& shape : {geometry::car(), geometry::truck()}) {
+        Sim world(support::straight_road(2, 600, curvature));
+        auto const place = [&](double s) {  // in the right lane
+          double const radius = 1.0 / curvature + 5.25, turn = s * curvature;
+          return Sim::AgentSpec{.position = {radius * std::sin(turn), 1.0 / curvature - radius * std::cos(turn)},
+                                .heading = turn,
+                                .speed = speed,
+                                .shape = shape};
+        };
+        auto fast = place(10), slow = place(60);
+        fast.behavior = Mobil{.law = {.desired_speed = speed}};
+        slow.behavior = IdmClassic{.law = {.desired_speed = 0.4 * speed}};
+        slow.speed = 0.4 * speed;
+        world.add(fast);
+        world.add(slow);
+        CHECK(impossible_steps(world, dt, 40.0).first == 0);
+      }
+    }
+}
+
 TEST_CASE("what a dynamics permits is asked of the one that an agent has") {
   using Set = DynamicSet<SingleTrack, KinematicPoint>;
   auto const flaw = [](auto const& dynamics, State const& end) {
@@ -190,6 +216,20 @@ TEST_CASE("what a dynamics permits is asked of the one that an agent has") {
   CHECK(flaw(TripleIntegrator{}, turns) == Flaw::none);     // it has no steering
   CHECK(flaw(Set(SingleTrack{.lowest_acceleration = -3.0}), brakes) == Flaw::acceleration);
   CHECK(flaw(Set(SingleTrack{}), brakes) == Flaw::none);
+  State const aside{.x = 0.165, .y = 0.113, .heading = 0.6, .speed = 1.0};
+  CHECK(flaw(Set(KinematicPoint{}), aside) == Flaw::none);
+  CHECK(flaw(Set(SingleTrack{}), aside) != Flaw::none);
+}
+
+TEST_CASE("lower grip is asked across, too") {
+  auto const flaw = [](Infeasible const& judge, double turn) {
+    Infeasible::Drift drift;
+    State const to{.time = 0.2, .x = 4.0, .y = 2.0 * turn, .heading = turn, .speed = 20.0};
+    return judge.between(State{.speed = 20.0}, to, SingleTrack{}, drift).flaw;
+  };
+  CHECK(flaw({}, 0.085) == Flaw::none);  // 7.5 m/s^2 beyond the tolerance
+  CHECK(flaw({}, 0.095) == Flaw::grip);  // 8.5 m/s^2: its dynamics permits 8
+  CHECK(flaw({.grip = 6.0}, 0.085) == Flaw::grip);
 }
 
 TEST_CASE("small errors of each step add up, and fade") {
@@ -216,4 +256,33 @@ TEST_CASE("small errors of each step add up, and fade") {
   CHECK(flaw_after(10, 0.0, 0.0) == Flaw::none);
   CHECK(flaw_after(1, 0.0, -0.1) == Flaw::none);
   CHECK(flaw_after(1, 0.0, -0.1) == Flaw::side_drift);
+}
+
+TEST_CASE("small errors are as small in short steps as in long ones") {
+  // Each in its direction per second; a step of 1 s permits more only for what a stop within it adds.
+  auto const flaw = [](double dt, double along, double across, double turning, double braking) {
+    Infeasible::Drift drift;
+    State now{.speed = braking > 0.0 ? 40.0 : 0.0};
+    while (now.time < 4.0) {
+      State next = now;
+      next.time += dt;
+      next.speed = std::max(0.0, now.speed - braking * dt);
+      next.x += along * dt + 0.5 * (now.speed + next.speed) * dt;
+      next.y += across * dt;
+      next.heading += turning * dt;
+      auto const found = Infeasible{}.between(now, next, SingleTrack{}, drift).flaw;
+      if (found != Flaw::none) return found;
+      now = next;
+    }
+    return Flaw::none;
+  };
+  for (double const dt : {0.01, 0.05, 0.1, 0.2, 0.25}) {
+    CAPTURE(dt);
+    CHECK(flaw(dt, 0.08, 0.08, 0.0, 8.0) == Flaw::none);
+    CHECK(flaw(dt, 0.0, 0.0, 0.015, 0.0) == Flaw::none);
+    CHECK(flaw(dt, 0.3, 0.0, 0.0, 0.0) == Flaw::drift);
+    CHECK(flaw(dt, 0.0, 0.2, 0.0, 0.0) == Flaw::side_drift);
+    CHECK(flaw(dt, 0.0, 0.0, 0.15, 0.0) == Flaw::turn_drift);
+    CHECK(flaw(dt, 0.0, 0.0, 0.0, 8.15) == Flaw::speed_drift);
+  }
 }

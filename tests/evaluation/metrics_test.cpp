@@ -342,4 +342,16 @@ TEST_CASE("the closed-loop score counts the way against the direction within any
                .id = AgentId{2}});
     CHECK(score_of(world, 0.0, 20, 0.125) == doctest::Approx(expected));
   }
+  for (double const speed : {1.9, 2.1}) {  // a second has 5 steps of 0.2 s, however their times are rounded
+    std::vector<State> states;
+    for (int i = 0; i <= 101; ++i)
+      states.push_back({0.2 * i, 100.0 + 0.2 * i * speed, i > 0 ? 1.75 : -1.75, 0.0, speed});
+    Sim world(support::two_way_road(300));
+    world.add({.position = {100, -1.75},
+               .heading = 0.0,
+               .speed = speed,
+               .behavior = StaticTrajectory(states),
+               .id = AgentId{2}});
+    CHECK(observed(world, AgentId{2}, ClosedLoopScore{}, 100, 0.2).parts().direction == (speed < 2.0 ? 1.0 : 0.5));
+  }
 }

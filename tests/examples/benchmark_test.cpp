@@ -100,8 +100,10 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
     kill(child, by_hand ? SIGINT : SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);
-    if (by_hand && WIFSIGNALED(status))
+    if (by_hand) {
+      REQUIRE(WIFSIGNALED(status));
       CHECK(has(content_of(folder.file("said")), "interrupted: the same command goes on where it was"));
+    }
     auto const found = rows_in(folder.file("killed.db"));
     CHECK(found >= wanted);
     CHECK(found >= kept);
@@ -190,6 +192,11 @@ TEST_CASE("a file of parameters says how fast a planner likes to drive; without 
   };
   double const usual = time_with(R"({"idm": {"law": {"minimum_gap": 2.5}}})");
   CHECK(time_with(R"({"idm": {"law": {"desired_speed": 8}}})") > 1.3 * usual);
+  auto const own = cambium::rounded_text(cambium::IdmClassic{}.law.desired_speed);
+  CHECK(time_with(R"({"idm": {"law": {"desired_speed": )" + own + "}}}") != usual);  // also where it is the planner's own
+  auto const printed = program.output({"--print-parameters"});
+  CHECK(has(printed, "minimum_gap"));
+  CHECK_FALSE(has(printed.substr(printed.find("\"idm\""), 400), "desired_speed"));
 }
 
 TEST_CASE("a folder of sets is run as a whole, wherever it is") {

@@ -188,15 +188,18 @@ class LastWorlds {
   std::deque<World> worlds_{};
 };
 
-/// Which agent of `own` drove before the last step and has not started after it, so that nobody sees it; empty if none.
+/// Which agent of `own` drove before the last step and has a plan that ends it or has not begun, so that nobody sees it
+/// any more; empty if none.
 template <class World>
 [[nodiscard]] std::string vanished(World const& world, std::span<AgentId const> own) {
   auto const* const before = world.before_step();
   for (auto const id : own) {
     auto const slot = world.slot_of(id);
-    if (before != nullptr && (*before)[slot].status == AgentStatus::driving &&
-        world.frame().agents[slot].status == AgentStatus::not_started)
-      return "agent " + to_string(id) + ": its plan says that it has not started, but it drives";
+    if (before == nullptr || (*before)[slot].status != AgentStatus::driving) continue;
+    auto const now = world.frame().agents[slot].status;
+    if (now == AgentStatus::not_started || now == AgentStatus::expired)
+      return "agent " + to_string(id) + ": its plan says that it " +
+             (now == AgentStatus::expired ? "has nothing more to do" : "has not started") + ", but it drives";
   }
   return {};
 }
@@ -246,8 +249,7 @@ template <class World, class AfterStep>
     after_step(world, result);
     bool const is_away = status != AgentStatus::driving && status != AgentStatus::not_started;
     bool const done =
-        has_goal ? world.reached_goal(slot)
-                 : status == AgentStatus::arrived || status == AgentStatus::left_map || status == AgentStatus::expired;
+        has_goal ? world.reached_goal(slot) : status == AgentStatus::arrived || status == AgentStatus::left_map;
     result.success = done && !result.collision && result.error.empty();
     result.off_route = result.off_route || (has_goal && !done && is_away && !result.collision && result.error.empty());
     is_over = !result.error.empty() || result.collision || done || is_away;

@@ -70,6 +70,7 @@ struct RunResult {
   double time_headway = undefined;
   double time_exposed_s = 0.0;
   double time_integrated = 0.0;
+  bool discomfort = false;
 
   static constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
@@ -80,7 +81,7 @@ struct RunResult {
     auto const outcome = parameter_list(
         parameter("success", &P::success,
                   "the ego reached its goal in time, without a collision and what its set calls a failure"),
-        parameter("collision", &P::collision, "the ego touched an agent or an object"),
+        parameter("collision", &P::collision, "an agent under test touched another agent or an object"),
         parameter("at_fault", &P::at_fault, "it is to blame for that, by nuPlan's rules"),
         parameter("off_road", &P::off_road, "a part of it left the drivable lanes"),
         parameter("off_route", &P::off_route, "it left its route, or traffic before its goal"),
@@ -112,20 +113,23 @@ struct RunResult {
                   "number of steps in which a collision without the ego began"),
         parameter("others_failed", &P::others_failed, "-", non_negative,
                   "number of agents that found no plan, or an impossible one, and left traffic; not those under test"),
-        parameter("hit", &P::hit, "the agent that the ego touched"));
+        parameter("hit", &P::hit, "the agent that was touched"));
     auto const rules = parameter_list(
         parameter("infeasible", &P::infeasible, "an agent under test made a motion that no vehicle can make"),
-        parameter("red_light", &P::red_light, "the ego passed a red light"),
-        parameter("stop_sign", &P::stop_sign, "it passed a stop sign without a stop"),
-        parameter("right_of_way", &P::right_of_way, "it did not let one go first who had the right of way"),
-        parameter("wrong_way", &P::wrong_way,
-                  "it drove in lanes of oncoming traffic, altogether for a second or what its set permits"),
-        parameter("speeding", &P::speeding, "it drove faster than its lane permits"),
-        parameter("solid_line", &P::solid_line, "it changed lanes where the road marks forbid it"),
+        parameter("red_light", &P::red_light, "an agent under test passed a red light"),
+        parameter("stop_sign", &P::stop_sign, "an agent under test passed a stop sign without a stop"),
+        parameter("right_of_way", &P::right_of_way,
+                  "an agent under test did not let one go first who had the right of way"),
+        parameter(
+            "wrong_way", &P::wrong_way,
+            "an agent under test drove in lanes of oncoming traffic, altogether for a second or what its set permits"),
+        parameter("speeding", &P::speeding, "an agent under test drove faster than its lane permits"),
+        parameter("solid_line", &P::solid_line, "an agent under test changed lanes where the road marks forbid it"),
         parameter("infeasible_steps", &P::infeasible_steps, "-", non_negative,
                   "number of such motions, of a step each"),
-        parameter("impact_speed", &P::impact_speed, "m/s", non_negative,
-                  "relative to what the ego touched; undefined without a collision"),
+        parameter(
+            "impact_speed", &P::impact_speed, "m/s", non_negative,
+            "relative to what was touched, or a step before, where that was faster; undefined without a collision"),
         parameter("least_clearance", &P::least_clearance, "m", non_negative,
                   "to the nearest road user or object; 50 m: that or more"),
         parameter("imposed_braking", &P::imposed_braking, "m/s^2", non_negative,
@@ -139,7 +143,9 @@ struct RunResult {
         parameter("time_exposed_s", &P::time_exposed_s, "s", non_negative,
                   "time exposed TTC: with less than 2 s to a collision"),
         parameter("time_integrated", &P::time_integrated, "s^2", non_negative,
-                  "time integrated TTC: what lacked of these 2 s, over time"));
+                  "time integrated TTC: what lacked of these 2 s, over time"),
+        parameter("discomfort", &P::discomfort,
+                  "accelerations, jerks or turns of the ego were beyond the bounds of its score"));
     return join_parameters(join_parameters(outcome, driving), rules);
   }
 

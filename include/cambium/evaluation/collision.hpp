@@ -125,9 +125,22 @@ template <class World>
   return std::abs(geometry::angle_difference(portable::atan2(other.y - state.y, other.x - state.x), state.heading));
 }
 
+/// Whether the middle of `other` is behind a vehicle that covers `own`.
+[[nodiscard]] inline bool is_behind(geometry::Shape const& shape, geometry::OrientedBox const& own,
+                                    geometry::OrientedBox const& other) {
+  double const ahead = 0.5 * (shape.front - shape.rear), left = 0.5 * (shape.left - shape.right);
+  double const dx = other.x - own.x, dy = other.y - own.y;
+  return std::abs(portable::atan2(dy * own.cos - dx * own.sin + left, dx * own.cos + dy * own.sin + ahead)) >
+         behind_bearing;
+}
+
+/// The higher of an agent's speeds before and after the last step [m/s].
 template <class World>
-[[nodiscard]] bool is_behind(World const& world, Slot slot, geometry::OrientedBox const& other) {
-  return bearing_of(world, slot, other) > behind_bearing;
+[[nodiscard]] double speed_in_step(World const& world, Slot slot) {
+  double const now = world.frame().agents[slot].state.speed;
+  auto const* const before = world.before_step();
+  bool const is_known = before != nullptr && (*before)[slot].status == AgentStatus::driving;
+  return is_known ? std::max(now, double{(*before)[slot].state.speed}) : now;
 }
 
 /// Whether the agent's body is between the borders of its lane, at its rear, its reference point and its front; it may
@@ -216,8 +229,10 @@ struct Collision {
 /// | the front side of the agent touches the other | yes |
 /// | they touch otherwise | if the agent is not within its lane |
 ///
-/// Neither the right of way counts, nor whether there was time to react. With a `look_ahead`, whether it will touch an
-/// object, or an agent that is ahead of its reference point now, if all keep their velocities. O(agents + objects).
+/// Neither the right of way counts, nor whether there was time to react. `in_last_step` judges where two touched first
+/// in a step, and by their higher speeds before and after it, so that a stop in that step hides nothing. With a
+/// `look_ahead`, whether it will touch an object, or an agent that is ahead of its reference point now, if all keep
+/// their velocities. O(agents + objects).
 struct AtFaultCollision {
   double blameless_speed = cambium::blameless_speed;
   double look_ahead = 0.0;
@@ -249,6 +264,18 @@ struct AtFaultCollision {
                                        }));
   }
 
+  /// Whether an agent is to blame for touching another one in the last step.
+  template <class World>
+  [[nodiscard]] bool in_last_step(World const& world, Slot slot, Slot other) const {
+    if (detail::speed_in_step(world, slot) <= blameless_speed) return false;
+    if (detail::speed_in_step(world, other) <= blameless_speed) return true;
+    constexpr int parts = 32;
+    auto const own = motion_at(world, slot), its = motion_at(world, other);
+    int first = 0;
+    while (first < parts && !geometry::intersects(own.at(1.0 / parts * first), its.at(1.0 / parts * first))) ++first;
+    return blames(world, slot, own.at(1.0 / parts * first), its.at(1.0 / parts * first));
+  }
+
  private:
   template <class World>
   [[nodiscard]] bool stands(World const& world, Slot slot) const {
@@ -270,8 +297,14 @@ struct AtFaultCollision {
              geometry::intersects(detail::box_after(world, slot, look_ahead),
                                   detail::box_after(world, other, look_ahead));
     if (!geometry::intersects(own, its)) return false;
-    if (stands(world, other)) return true;
-    if (detail::is_behind(world, slot, its)) return false;
+    return stands(world, other) || blames(world, slot, own, its);
+  }
+
+  /// The last three rules, where the two touch.
+  template <class World>
+  [[nodiscard]] static bool blames(World const& world, Slot slot, geometry::OrientedBox const& own,
+                                   geometry::OrientedBox const& its) {
+    if (detail::is_behind(world.roster().agents[slot].shape, own, its)) return false;
     auto front = own;
     front.x += own.half_length * own.cos;
     front.y += own.half_length * own.sin;

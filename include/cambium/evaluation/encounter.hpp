@@ -179,6 +179,7 @@ struct TimeToCollision {
   template <class World>
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
     if (!in_traffic(world, slot)) return longest;
+    if (Collision{}(world, slot)) return 0.0;
     detail::PredictedArea own(world, slot);
     double least = longest;
     detail::for_each_met(world, slot, own, longest, bearing, [&](auto& other) {
@@ -217,17 +218,14 @@ struct RequiredDeceleration {
       auto const meets = [&](double braking) {
         return detail::time_of_contact(own, other, longest, braking) < longest;
       };
-      if (required >= most || !meets(required)) return;
-      double high = most;
-      if (meets(high)) {
-        required = most;
-        return;
+      if (required >= most || !meets(0.0)) return;
+      double low = 0.0, high = most;
+      if (meets(high)) low = high;
+      while (high - low > 1e-3 * most) {
+        double const middle = 0.5 * (low + high);
+        (meets(middle) ? low : high) = middle;
       }
-      while (high - required > 1e-3 * most) {
-        double const middle = 0.5 * (required + high);
-        (meets(middle) ? required : high) = middle;
-      }
-      required = high;
+      required = std::max(required, high);
     });
     return required;
   }

@@ -25,21 +25,33 @@ namespace cambium {
 /// - `sideways`: it leads off its headings, by more than a curvature that changes within grip can;
 /// - `acceleration`: it changes its speed faster than its dynamics permits, where that has bounds, or than grip does;
 /// - `turn`: it turns more than its way times tan(steering limit) / wheel base;
-/// - `grip`: sqrt(a_along^2 + a_across^2) is more than tyres can, or than its dynamics permits where that is more;
-/// - `drift`, `side_drift`: single steps are possible, but what they are too long or lead off the headings adds up,
-/// over
-///   about a second, to more than one step may be off. Only with a `Drift` that its caller keeps.
+/// - `grip`: it turns harder than tyres can or its dynamics permits, or sqrt(a_along^2 + a_across^2) is more than tyres
+///   can, or than its dynamics permits where that is more.
 ///
 /// The reference point is the rear axle, as in `SingleTrack`. A speed, a place and a heading may each be off by a
-/// tolerance in each step. True only right after a step, see `World::before_step`; who enters or stands still is never
+/// tolerance in each step, but not in every step: with a `Drift` that the caller keeps, errors add up, and their sums
+/// have bounds, too. True only right after a step, see `World::before_step`; who enters or does not move is never
 /// infeasible. O(1).
 struct Infeasible {
   /// What is wrong with a motion.
-  enum class Flaw : std::uint8_t { none, way, sideways, acceleration, turn, grip, drift, side_drift };
-  /// How far an agent's last steps were longer than its speeds say, and led to the left of its headings [m]; an error
-  /// fades with a time constant of 1 s.
+  enum class Flaw : std::uint8_t {
+    none,
+    way,
+    sideways,
+    acceleration,
+    turn,
+    grip,
+    drift,
+    side_drift,
+    turn_drift,
+    speed_drift
+  };
+  /// Sums of an agent's errors in its last steps; an error fades with a time constant of 1 s.
   struct Drift {
-    double along = 0.0, across = 0.0;
+    double along = 0.0;   ///< by how much its way was longer than its speeds say [m]
+    double across = 0.0;  ///< how far it led to the left of its headings [m]
+    double turn = 0.0;    ///< by how much it turned more than it can [rad]
+    double speed = 0.0;   ///< by how much it changed its speed more than it can [m/s]
   };
   /// The flaw, what was driven, and what would be possible.
   struct Finding {
@@ -51,19 +63,22 @@ struct Infeasible {
 
     /// "changes its speed by -53 m/s^2, possible are -9 m/s^2".
     friend std::string to_string(Finding const& finding) {
-      constexpr char const* does[] = {"",         "moves", "moves sideways by",         "changes its speed by",
-                                      "turns by", "needs", "drifts from its speeds by", "drifts off its headings by"};
-      constexpr char const* unit[] = {"",
-                                      " m in a step",
-                                      " m in a step",
-                                      " m/s^2",
-                                      " rad in a step",
-                                      " m/s^2 of its tyres",
-                                      " m in a second",
-                                      " m in a second"};
-      auto const which = static_cast<std::size_t>(finding.flaw);
-      if (which == 0) return "moves as vehicles can";
-      return std::string(does[which]) + " " + detail::rounded_text(finding.driven) + unit[which] + ", possible are " +
+      struct Words {
+        char const *does, *unit;
+      };
+      constexpr Words words[] = {{"", ""},
+                                 {"moves", " m in a step"},
+                                 {"moves sideways by", " m in a step"},
+                                 {"changes its speed by", " m/s^2"},
+                                 {"turns by", " rad in a step"},
+                                 {"needs", " m/s^2 of its tyres"},
+                                 {"drifts from its speeds by", " m in a second"},
+                                 {"drifts off its headings by", " m in a second"},
+                                 {"turns more than it can, by", " rad in a second"},
+                                 {"changes its speed more than it can, by", " m/s in a second"}};
+      auto const& [does, unit] = words[static_cast<std::size_t>(finding.flaw)];
+      if (finding.flaw == Flaw::none) return "moves as vehicles can";
+      return std::string(does) + " " + detail::rounded_text(finding.driven) + unit + ", possible are " +
              detail::rounded_text(finding.possible);
     }
   };
@@ -72,6 +87,7 @@ struct Infeasible {
   double place = 0.05;
   double heading = 0.01;
   double speed = 0.05;
+  double drift = 0.1;
 
   static constexpr char const* name = "infeasible";
   static constexpr char const* summary = "makes a motion that no vehicle can make";
@@ -80,7 +96,8 @@ struct Infeasible {
     return parameter_list(parameter("grip", &P::grip, "m/s^2", Range{0.1, 100}, "of the tyres, along and across"),
                           parameter("place", &P::place, "m", Range{0, 10}, "tolerance of positions in a step"),
                           parameter("heading", &P::heading, "rad", Range{0, 1}, "tolerance of headings"),
-                          parameter("speed", &P::speed, "m/s", Range{0, 10}, "tolerance of speeds"));
+                          parameter("speed", &P::speed, "m/s", Range{0, 10}, "tolerance of speeds"),
+                          parameter("drift", &P::drift, "m", Range{0, 10}, "tolerance of positions in a second"));
   }
 
   template <class World>
@@ -88,14 +105,14 @@ struct Infeasible {
     return finding(world, slot).flaw != Flaw::none;
   }
 
-  /// What is wrong with the last step of the agent at `slot`; brings its `drift` up to date.
+  /// What is wrong with the last step of the agent at `slot`; brings its sums of errors up to date.
   template <class World>
-  [[nodiscard]] Finding finding(World const& world, Slot slot, Drift& drift) const {
+  [[nodiscard]] Finding finding(World const& world, Slot slot, Drift& drifts) const {
     auto const* const before = world.before_step();
     auto const& now = world.frame().agents[slot];
-    if (before != nullptr && now.status == AgentStatus::driving && (*before)[slot].status == AgentStatus::driving)
-      return between((*before)[slot].state, now.state, world.roster().agents[slot].dynamics, drift);
-    drift = {};
+    if (before != nullptr && drove((*before)[slot].status, now.status))
+      return between((*before)[slot].state, now.state, world.roster().agents[slot].dynamics, drifts);
+    drifts = {};
     return {};
   }
   /// The same of a step alone.
@@ -107,8 +124,8 @@ struct Infeasible {
 
   /// The same for two states of a vehicle.
   template <MotionState S, class Dynamics>
-  [[nodiscard]] Finding between(S const& before, S const& now, Dynamics const& dynamics, Drift& drift) const {
-    auto const earlier = std::exchange(drift, {});  // a step that is impossible by itself starts it anew
+  [[nodiscard]] Finding between(S const& before, S const& now, Dynamics const& dynamics, Drift& drifts) const {
+    auto const earlier = std::exchange(drifts, {});  // a step that is impossible by itself starts it anew
     double const dt = now.time - before.time;
     if (!(dt > 0.0)) return {};
     double const turn = geometry::angle_difference(now.heading, before.heading);
@@ -123,21 +140,34 @@ struct Infeasible {
     auto const middle = portable::sin_cos(before.heading + 0.5 * turn);
     double const dx = now.x - before.x, dy = now.y - before.y;
     double const along = dx * middle.cos + dy * middle.sin, across = dy * middle.cos - dx * middle.sin;
-    double const way = mean * dt, slack = spare + speed * dt + place;
+    double const way = mean * dt, slack = spare + speed * dt + place, farthest = std::abs(way) + slack;
     if (along > way + slack) return {Flaw::way, along, way + slack};
     if (along < chord * way - slack) return {Flaw::way, along, chord * way - slack};
-    double const off = place + 0.5 * heading * std::abs(along) + grip * dt * dt / 6.0;
+    double const bend = largest_bend_of(dynamics);
+    bool const steers = std::isfinite(bend);  // others turn on the spot, and then go anywhere
+    double const swing = steers ? std::min(most * dt, bend * farthest * farthest) / 6.0
+                                : most * dt / 6.0 + std::abs(portable::sin_cos(0.5 * turn).sin) * farthest;
+    double const off = place + 0.5 * heading * std::abs(along) + swing;
     if (std::abs(across) > off) return {Flaw::sideways, across, std::copysign(off, across)};
-    double const bend = largest_bend_of(dynamics), turned = std::max(0.0, std::abs(turn) - heading);
-    if (turned > bend * (std::abs(way) + slack)) return {Flaw::turn, turn, bend * (std::abs(way) + slack)};
-    double const lateral = std::max(0.0, mean - speed) * turned / dt, braked = std::max(0.0, std::abs(a) - inexact);
-    double const used = std::sqrt(lateral * lateral + braked * braked);
-    double const most_grip = std::max(grip, portable::hypot(lowest, largest_lateral_of(dynamics)));
-    if (used > most_grip) return {Flaw::grip, used, most_grip};
+    double const turned = std::max(0.0, std::abs(turn) - heading), moving = std::max(0.0, mean - speed);
+    if (turned > bend * farthest) return {Flaw::turn, turn, std::copysign(bend * farthest, turn)};
+    double const lateral = moving * turned / dt, most_lateral = largest_lateral_of(dynamics);
+    if (lateral > most_lateral) return {Flaw::grip, lateral, most_lateral};
+    double const braked = std::max(0.0, std::abs(a) - inexact), used = portable::hypot(lateral, braked);
+    double const most_used = std::max(grip, portable::hypot(lowest, most_lateral));
+    if (used > most_used) return {Flaw::grip, used, most_used};
+
     double const faded = portable::exp(-dt);
-    drift = {faded * earlier.along + along - chord * way, faded * earlier.across + across};
-    if (std::abs(drift.along) > slack) return {Flaw::drift, drift.along, std::copysign(slack, drift.along)};
-    if (std::abs(drift.across) > off) return {Flaw::side_drift, drift.across, std::copysign(off, drift.across)};
+    double const grips = moving > 0.0 ? most_lateral * dt / moving : std::numeric_limits<double>::infinity();
+    drifts = {faded * earlier.along + along - chord * way, steers ? faded * earlier.across + across : 0.0,
+              faded * earlier.turn + std::max(0.0, std::abs(turn) - std::min(bend * std::abs(way), grips)),
+              faded * earlier.speed + std::max({0.0, change - highest * dt, lowest * dt - change})};
+    double const far = drift + most * dt / 8.0, aside = drift + most * dt / 24.0;  // a stop within a step adds to these
+    if (std::abs(drifts.along) > far) return {Flaw::drift, drifts.along, std::copysign(far, drifts.along)};
+    if (std::abs(drifts.across) > aside) return {Flaw::side_drift, drifts.across, std::copysign(aside, drifts.across)};
+    double const round = 2.0 * heading + (steers ? bend * far : 0.0);
+    if (drifts.turn > round) return {Flaw::turn_drift, drifts.turn, round};
+    if (drifts.speed > 2.0 * speed) return {Flaw::speed_drift, drifts.speed, 2.0 * speed};
     return {};
   }
 
@@ -155,15 +185,15 @@ struct Infeasible {
     else
       return {-grip, grip};
   }
-  /// Largest acceleration across the heading that the dynamics permits; 0 where it has no such bound.
+  /// Largest acceleration across the heading, of what the dynamics permits and grip.
   template <class Dynamics>
-  [[nodiscard]] static double largest_lateral_of(Dynamics const& dynamics) {
+  [[nodiscard]] double largest_lateral_of(Dynamics const& dynamics) const {
     if constexpr (requires { dynamics.visit([](auto const&) {}); })
-      return dynamics.visit([](auto const& one) { return largest_lateral_of(one); });
+      return dynamics.visit([&](auto const& one) { return largest_lateral_of(one); });
     else if constexpr (requires { dynamics.lateral_acceleration_limit; })
-      return dynamics.lateral_acceleration_limit;
+      return std::min(grip, dynamics.lateral_acceleration_limit);
     else
-      return 0.0;
+      return grip;
   }
   /// Largest curvature [1/m] that the steering permits; infinite where the dynamics has none.
   template <class Dynamics>

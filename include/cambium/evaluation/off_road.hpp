@@ -135,7 +135,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// Whether an agent in traffic drives in a lane of oncoming traffic, outside all lanes of its route.
+/// Whether an agent in traffic drives in a lane of oncoming traffic, outside all lanes of its route, or back in its
+/// own.
 struct OncomingLane {
   static constexpr char const* name = "oncoming_lane";
   static constexpr char const* summary = "drives in a lane of oncoming traffic";
@@ -155,7 +156,8 @@ struct OncomingLane {
                                    S const& state, geometry::Shape const& shape) {
     auto const sides = road.corridors[at.corridor].widths_at(at.s, at.segment);
     bool const is_in_lane = at.lateral < sides.left && -at.lateral < sides.right;
-    return !is_in_lane && detail::is_against_traffic(map, geometry::box_of(shape, state));
+    if (is_in_lane) return std::abs(at.heading_error) > 0.5 * geometry::pi && state.speed > blameless_speed;
+    return detail::is_against_traffic(map, geometry::box_of(shape, state));
   }
 };
 

@@ -11,6 +11,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/evaluation/infeasible.hpp"
+#include "cambium/evaluation/metrics/closed_loop_score.hpp"
 #include "cambium/map/content_hash.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/recipe.hpp"
@@ -29,22 +30,26 @@ enum class Criterion : std::uint8_t {
   solid_line,
   off_road,
   imposed_braking,
-  straddling
+  straddling,
+  discomfort
 };
 
 inline constexpr char const* criterion_names =
-    "infeasible|red_light|stop_sign|right_of_way|wrong_way|speeding|solid_line|off_road|imposed_braking|straddling";
+    "infeasible|red_light|stop_sign|right_of_way|wrong_way|speeding|solid_line|off_road|imposed_braking|straddling|"
+    "discomfort";
 
 [[nodiscard]] inline std::string_view to_string(Criterion criterion) {
   return detail::split(criterion_names, "|")[static_cast<std::size_t>(criterion)];
 }
 
-/// From where on a run meets the criteria that are a matter of degree.
+/// From where on a run meets the criteria that are a matter of degree, and the bounds of its closed-loop score, which
+/// are those of `discomfort`, too.
 struct CriterionBounds {
   double wrong_way = 1.0;
   double imposed_braking = 4.0;
   double straddling = 10.0;
   Infeasible infeasible{};
+  ClosedLoopScore score{};
 
   static constexpr char const* name = "criterion_bounds";
   static constexpr auto parameters() {
@@ -53,7 +58,8 @@ struct CriterionBounds {
         parameter("wrong_way", &P::wrong_way, "s", non_negative, "in lanes of oncoming traffic, altogether"),
         parameter("imposed_braking", &P::imposed_braking, "m/s^2", non_negative, "harder braking of others fails"),
         parameter("straddling", &P::straddling, "s", non_negative, "longer times between two lanes fail"),
-        parameter("infeasible", &P::infeasible, "what is no motion of a vehicle"));
+        parameter("infeasible", &P::infeasible, "what is no motion of a vehicle"),
+        parameter("score", &P::score, "what is good driving"));
   }
 };
 

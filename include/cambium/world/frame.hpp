@@ -24,6 +24,13 @@ enum class AgentStatus : std::uint8_t {
   failed,       ///< its behaviour or execution returned no valid next state; it keeps its last valid state
 };
 
+/// Whether an agent drove in a step before and after which it has these statuses. At its end it may have left traffic.
+[[nodiscard]] constexpr bool drove(AgentStatus before, AgentStatus after) {
+  using S = AgentStatus;
+  return before == S::driving &&
+         (after == S::driving || after == S::arrived || after == S::off_route || after == S::left_map);
+}
+
 /// The status as text for messages.
 [[nodiscard]] constexpr char const* to_string(AgentStatus status) {
   constexpr char const* names[] = {"driving",      "not started", "arrived", "off its route",

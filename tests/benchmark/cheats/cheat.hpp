@@ -20,6 +20,8 @@ struct Cheat {
     flincher,       ///< stands still in the last step before the impact, so that it is not to blame
     bumper,         ///< touches its leader slowly, then drives through it
     teleporter,     ///< its places run ahead of its speed
+    escaper,        ///< leaves the road at once, over all that is in its way
+    quitter,        ///< says that it has nothing more to do while something is in its way
     creeper,        ///< claims to stand, and moves by as much as a single step may be off
     liar,           ///< its speed jumps, its plans claim that it does not
     blinker,        ///< brakes hard for a step at a time, too short for filtered accelerations
@@ -31,16 +33,19 @@ struct Cheat {
     thrower,        ///< throws in place of an answer
     judges_twin,    ///< accelerates and brakes as hard as the published score just permits
     brake_checker,  ///< brakes hard for nothing, so that whoever follows runs into it
+    pulser,         ///< the same, but never when the other brakes
+    late_stopper,   ///< stands in the end of the step of its impact, by braking as hard as it can
   };
 
   Kind kind = Kind::honest;
   static constexpr char const* name = "cheat";
   static constexpr auto parameters() {
-    return cambium::parameter_list(cambium::choice("kind", &Cheat::kind,
-                                                   "honest|two_faced|statue|flincher|bumper|teleporter|creeper|liar|"
-                                                   "blinker|crab|drifter|bullet|ghost|odd|thrower|judges_twin|"
-                                                   "brake_checker",
-                                                   "what it does"));
+    return cambium::parameter_list(
+        cambium::choice("kind", &Cheat::kind,
+                        "honest|two_faced|statue|flincher|bumper|teleporter|escaper|quitter|creeper|liar|"
+                        "blinker|crab|drifter|bullet|ghost|odd|thrower|judges_twin|"
+                        "brake_checker|pulser|late_stopper",
+                        "what it does"));
   }
 
   template <class View>
@@ -63,6 +68,9 @@ struct Cheat {
         break;
       case Kind::teleporter:
         way = 60.0 * dt;
+        break;
+      case Kind::escaper:
+        way = 1000.0;
         break;
       case Kind::creeper:
         next = 0.0;
@@ -87,6 +95,12 @@ struct Cheat {
       case Kind::brake_checker:
         next = std::max(8.0, speed + (cycle % 25 < 5 ? -7.0 : 3.0) * dt);
         break;
+      case Kind::pulser:
+        next = speed + (cycle % 4 == 0 ? -8.0 : 8.0 / 3.0) * dt;
+        break;
+      case Kind::late_stopper:
+        if (gap < speed * dt) next = std::max(0.0, speed - 8.0 * dt);
+        break;
       case Kind::thrower:
         throw std::runtime_error("out of ideas");
       default:
@@ -100,6 +114,7 @@ struct Cheat {
     cambium::Plan<View> plan;
     plan.trajectory.push_back(state);
     if (kind == Kind::ghost && gap < 20.0) plan.status = cambium::PlanStatus::not_started;
+    if (kind == Kind::quitter && gap < 20.0) plan.status = cambium::PlanStatus::expired;
     if (kind != Kind::honest) plan.action.acceleration = kind == Kind::two_faced && state.x > 100.0 ? -12.0 : 1e-9;
     if (kind == Kind::two_faced) plan.action.steering = 0.7;
     return plan;

@@ -80,7 +80,7 @@ struct RunRule {
   using R = RunResult;
   constexpr bool R::*fields[] = {&R::infeasible, &R::red_light, &R::stop_sign,  &R::right_of_way,
                                  &R::wrong_way,  &R::speeding,  &R::solid_line, &R::off_road};
-  return result.*fields[static_cast<std::size_t>(criterion)];
+  return criterion == Criterion::discomfort ? result.discomfort : result.*fields[static_cast<std::size_t>(criterion)];
 }
 
 /// The absolute value of evaluator `E`.
@@ -92,47 +92,53 @@ struct SizeOf {
   }
 };
 
-/// Judges a run of the agents `own`, of which the first is the ego: its metrics, and what it does that no vehicle can
-/// do or that the rules forbid. All of `own` are asked whether their motions are possible.
+/// Judges a run of the agents `own`, of which the first is the ego: its metrics, and what all of `own` do that no
+/// vehicle can do or that the rules forbid.
 template <class World>
 class RunJudge {
  public:
   RunJudge(World& world, std::span<AgentId const> own, CriterionBounds const& bounds)
-      : own_(own.begin(), own.end()), drifts_(own.size()), ego_(world.slot_of(own.front())), bounds_(bounds) {
+      : own_(own.begin(), own.end()),
+        drifts_(own.size()),
+        rules_(own.size(), run_rules()),
+        against_(own.size()),
+        ego_(world.slot_of(own.front())),
+        bounds_(bounds) {
+    std::get<Score>(metrics_).recorder = bounds.score;
     observe(world, 0.0);
   }
 
   void observe(World& world, double dt) {
     std::apply([&](auto&... metric) { (metric.recorder.observe(world, ego_, dt), ...); }, metrics_);
-    for (auto& rule : rules_) rule.monitor(world, ego_);
+    for (std::size_t i = 0; i < own_.size(); ++i)
+      for (auto& rule : rules_[i]) rule.monitor(world, world.slot_of(own_[i]));
     for (std::size_t i = 0; i < own_.size(); ++i) ask_whether_possible(world, own_[i], drifts_[i]);
-    if (!result_.off_road && OffRoad{}(world, ego_)) {
-      result_.off_road = true;
-      off_road_since_ = world.time();
-    }
+    off_road_.see(OffRoad{}(world, ego_), world.time());
+    discomfort_.see(1.0 - std::get<Score>(metrics_).recorder.parts().comfort, world.time());
     imposed_.see(std::get<Imposed>(metrics_).recorder.value(), world.time());
     straddling_.see(std::get<Straddling>(metrics_).recorder.value(), world.time());
     result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
-    against_.observe(world, ego_, dt);
-    if (auto const contact = Collision{}.contact(world, ego_)) {
-      note_collision(world, contact->agent);
-      result_.at_fault = AtFaultCollision{}(world, ego_);
-    }
+    for (std::size_t i = 0; i < own_.size(); ++i) against_[i].observe(world, world.slot_of(own_[i]), dt);
     auto const pair = AnyCollision{}.pair(world);
-    bool const others = pair && pair->first != own_.front() && pair->second != own_.front();
-    if (pair && !result_.collision) note_drive_through(world);
+    for (auto const agent : own_)
+      if (auto const slot = world.slot_of(agent); pair || !in_traffic(world, slot)) note_collision(world, slot);
+    bool const others = pair && !is_own(pair->first) && !is_own(pair->second);
     result_.others_collided += others && !others_collide_;
     others_collide_ = others;
   }
 
   [[nodiscard]] RunResult& result() { return result_; }
 
-  /// The result of a run that has ended, in which what `fails` names is no success.
+  /// The result of a run that has ended, in which what `fails` names is no success. What collided was neither far nor
+  /// late.
   [[nodiscard]] RunResult finished(World const& world, std::span<Criterion const> fails) {
     result_.steps = static_cast<std::int64_t>(world.frame().step);
     result_.duration_s = world.time();
     std::apply([&](auto const&... metric) { (metric.write(result_), ...); }, metrics_);
-    add_violations();
+    result_.off_road = off_road_.value > 0.0;
+    result_.discomfort = discomfort_.value > 0.0;
+    if (result_.collision) result_.least_time_to_collision = result_.least_clearance = 0.0;
+    add_violations(std::ranges::find(fails, Criterion::discomfort) != fails.end());
     for (auto const criterion : fails) {
       if (!meets(result_, criterion, bounds_)) continue;
       result_.success = false;
@@ -160,68 +166,86 @@ class RunJudge {
     worst_ = {world.time(), agent, finding};
   }
 
-  /// `other`: none for an object.
-  void note_collision(World const& world, AgentId other) {
-    if (!result_.collision) {
-      auto const velocity = [&](Slot slot) {
-        auto const& state = world.frame().agents[slot].state;
-        auto const along = portable::sin_cos(state.heading);
-        return std::pair(state.speed * along.cos, state.speed * along.sin);
-      };
-      auto [x, y] = velocity(ego_);
-      if (is_valid(other)) {
-        auto const its = velocity(world.slot_of(other));
-        x -= its.first;
-        y -= its.second;
-      }
-      result_.impact_speed = portable::hypot(x, y);
+  [[nodiscard]] bool is_own(AgentId agent) const { return std::ranges::find(own_, agent) != own_.end(); }
+
+  /// Notes what the agent at `slot` touches or touched during the last step, in which it may have left traffic.
+  void note_collision(World const& world, Slot slot) {
+    auto const* const before = world.before_step();
+    auto const is_there = [&](Slot at) {
+      auto const now = world.frame().agents[at].status;
+      return now == AgentStatus::driving || (before != nullptr && drove((*before)[at].status, now));
+    };
+    if (!is_there(slot)) return;
+    auto const own = motion_at(world, slot);
+    for (Slot other{}; index_of(other) < world.size(); ++other) {
+      if (other == slot || !is_there(other)) continue;
+      auto const its = motion_at(world, other);
+      if (!geometry::intersects(own, its)) continue;
+      note_contact(world, slot, world.roster().agents[other].id, relative_speed(world, slot, other));
+      result_.at_fault = result_.at_fault || AtFaultCollision{}.in_last_step(world, slot, other);
     }
-    result_.collision = true;
-    result_.hit = other;
+    if (touched_object(world, own) == nullptr) return;
+    double const speed = speed_in_step(world, slot);
+    note_contact(world, slot, none<AgentId>, speed);
+    result_.at_fault = result_.at_fault || speed > blameless_speed;
   }
 
-  /// A collision between two frames counts, too. Where both moved, nobody is at fault: how they met is not known.
-  void note_drive_through(World const& world) {
-    if (!in_traffic(world, ego_)) return;
-    auto const own = motion_at(world, ego_);
-    auto const moves = [&](Slot slot) { return world.frame().agents[slot].state.speed > blameless_speed; };
-    if (touched_object(world, own) != nullptr) {
-      note_collision(world, none<AgentId>);
-      result_.at_fault = moves(ego_);
-      return;
-    }
-    for (Slot slot{}; index_of(slot) < world.size() && !result_.collision; ++slot) {
-      if (slot == ego_ || !in_traffic(world, slot) || !geometry::intersects(own, motion_at(world, slot))) continue;
-      note_collision(world, world.roster().agents[slot].id);
-      result_.at_fault = moves(ego_) && !moves(slot);
-    }
+  /// `other`: none for an object.
+  void note_contact(World const& world, Slot slot, AgentId other, double speed) {
+    if (std::exchange(result_.collision, true)) return;
+    result_.impact_speed = speed;
+    result_.hit = other;
+    if (slot != ego_) hit_by_ = world.roster().agents[slot].id;
+  }
+
+  /// The higher of the relative speeds of two agents before and after the last step [m/s].
+  [[nodiscard]] static double relative_speed(World const& world, Slot a, Slot b) {
+    auto const of = [](auto const& records, Slot x, Slot y) {
+      auto const &one = records[x].state, &two = records[y].state;
+      auto const along = portable::sin_cos(one.heading), its = portable::sin_cos(two.heading);
+      return portable::hypot(one.speed * along.cos - two.speed * its.cos, one.speed * along.sin - two.speed * its.sin);
+    };
+    double const now = of(world.frame().agents, a, b);
+    auto const* const before = world.before_step();
+    bool const is_known =
+        before != nullptr && (*before)[a].status == AgentStatus::driving && (*before)[b].status == AgentStatus::driving;
+    return is_known ? std::max(now, of(*before, a, b)) : now;
   }
 
   /// Writes what was violated, in the order of time: "3.4 s red_light; 5 s wrong_way until 7.2 s".
-  void add_violations() {
+  void add_violations(bool with_discomfort) {
     struct Item {
       double time;
       std::string text;
     };
     std::vector<Item> items;
+    auto const by = [&](AgentId agent) {
+      return agent == own_.front() ? std::string() : " by agent " + to_string(agent);
+    };
     auto const seconds = [](double time) { return rounded_text(time) + " s"; };
-    for (auto& rule : rules_) {
-      rule.monitor.finish();
-      if (rule.is_broken == &RunResult::wrong_way && against_.value() < bounds_.wrong_way - same_time) continue;
-      for (auto const& violation : rule.monitor.violations()) {
-        result_.*rule.is_broken = true;
-        auto text = std::string(rule.name);
-        if (is_valid(violation.other)) text += " to agent " + to_string(violation.other);
-        if (violation.end > violation.begin) text += " until " + seconds(violation.end);
-        items.push_back({violation.begin, std::move(text)});
+    for (std::size_t i = 0; i < own_.size(); ++i)
+      for (auto& rule : rules_[i]) {
+        rule.monitor.finish();
+        if (rule.is_broken == &RunResult::wrong_way && against_[i].value() < bounds_.wrong_way - same_time) continue;
+        auto const& located = rule.monitor.violations();
+        for (auto const& violation : located) {
+          result_.*rule.is_broken = true;
+          auto text = rule.name + by(own_[i]);
+          if (is_valid(violation.other)) text += " to agent " + to_string(violation.other);
+          if (violation.end > violation.begin) text += " until " + seconds(violation.end);
+          if (&violation == &located.back() && rule.monitor.count() > located.size())
+            text += " (and " + std::to_string(rule.monitor.count() - located.size()) + " more)";
+          items.push_back({violation.begin, std::move(text)});
+        }
       }
-    }
+    if (is_valid(hit_by_)) items.push_back({result_.duration_s, "collision" + by(hit_by_)});
     if (result_.infeasible) {
       auto text = "infeasible: agent " + to_string(worst_.agent) + " " + to_string(worst_.finding);
       if (result_.infeasible_steps > 1) text += ", the worst of " + std::to_string(result_.infeasible_steps) + " steps";
       items.push_back({worst_.time, std::move(text)});
     }
-    if (result_.off_road) items.push_back({off_road_since_, "off_road"});
+    if (result_.off_road) items.push_back({off_road_.time, "off_road"});
+    if (with_discomfort && result_.discomfort) items.push_back({discomfort_.time, "discomfort"});
     if (meets(result_, Criterion::imposed_braking, bounds_))
       items.push_back({imposed_.time, "imposed_braking of " + rounded_text(imposed_.value) + " m/s^2"});
     if (meets(result_, Criterion::straddling, bounds_))
@@ -291,6 +315,7 @@ class RunJudge {
   using NonNegative = Metric<field, Recorder, true>;
   using R = RunResult;
   using Imposed = Metric<&R::imposed_braking, ImposedBraking>;
+  using Score = Metric<&R::closed_loop_score, ClosedLoopScore>;
   using Straddling = Metric<&R::straddling_s, LongestTime<Straddles>>;
   using Metrics =
       std::tuple<Metric<&R::progress_m, Integral<Progress>>, NonNegative<&R::mean_speed, MeanOf<Speed>>,
@@ -300,20 +325,20 @@ class RunJudge {
                  Metric<&R::least_clearance, WithOthers<Least<Clearance>>>, Imposed, Straddling,
                  NonNegative<&R::hardest_braking, Most<Braking>>, NonNegative<&R::largest_jerk, Most<SizeOf<Jerk>>>,
                  NonNegative<&R::largest_lateral_acceleration, Most<SizeOf<LateralAcceleration>>>,
-                 Metric<&R::hard_brakings, Times<HardBraking>>, Metric<&R::rss_compliance, RssCompliance>,
-                 Metric<&R::closed_loop_score, ClosedLoopScore>>;
+                 Metric<&R::hard_brakings, Times<HardBraking>>, Metric<&R::rss_compliance, RssCompliance>, Score>;
 
   std::vector<AgentId> own_;
-  std::vector<Infeasible::Drift> drifts_;  ///< of each
+  std::vector<Infeasible::Drift> drifts_;        ///< of each
+  std::vector<std::vector<RunRule>> rules_;      ///< that each keeps
+  std::vector<Integral<OncomingLane>> against_;  ///< time of each in lanes of oncoming traffic [s]
   Slot ego_;
   CriterionBounds bounds_;
   RunResult result_;
   bool others_collide_ = false;
-  Integral<OncomingLane> against_{};  ///< time in lanes of oncoming traffic [s]
-  double off_road_since_ = 0.0;       ///< [s]
-  Peak imposed_{}, straddling_{};     ///< [m/s^2], [s]
+  AgentId hit_by_ = none<AgentId>;  ///< a controlled agent that collided, if it was not the ego
+  Peak off_road_{}, discomfort_{};  ///< 0 or 1
+  Peak imposed_{}, straddling_{};   ///< [m/s^2], [s]
   Worst worst_{};
-  std::vector<RunRule> rules_ = run_rules();
   Metrics metrics_{};
 };
 

@@ -114,7 +114,7 @@ struct ClosedLoopScore {
     progress_ += Progress{}(world, slot) * dt;
     excess_ += SpeedLimitExcess{}(world, slot) * dt;
     against_.push_back({world.time(), OncomingLane{}(world, slot) ? record.state.speed * dt : 0.0});
-    while (world.time() - against_.front().time >= 1.0) against_.pop_front();
+    while (world.time() - against_.front().time >= 1.0 - same_time) against_.pop_front();
     double in_a_second = 0.0;
     for (auto const& step : against_) in_a_second += step.way;
     most_against_ = std::max(most_against_, in_a_second);

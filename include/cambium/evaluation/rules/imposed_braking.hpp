@@ -50,12 +50,17 @@ template <class World>
 /// another road user
 /// - that has the right of way over the agent, in a conflict in which the agent is;
 /// - right behind the agent, which has changed into its lane in the last `memory` [s];
-/// - right behind the agent, which brakes harder than `hard` although nothing ahead asks for that.
+/// - right behind the agent, which braked harder than `hard` in the last `reaction` [s] although nothing ahead asked
+/// for
+///   that.
 /// 0 if none braked harder than `comfortable`. O(agents + conflicts near) per step.
 struct ImposedBraking {
   double comfortable = 2.0;
   double hard = 4.0;
   double memory = 5.0;
+  double reaction = 2.0;
+  double horizon = 4.0;
+  double headway = 3.0;
 
   static constexpr char const* name = "imposed_braking";
   static constexpr char const* summary = "how hard others had to brake because of it [m/s^2]";
@@ -64,7 +69,11 @@ struct ImposedBraking {
     return parameter_list(
         parameter("comfortable", &P::comfortable, "m/s^2", Range{0, 50}, "others' braking that does not count"),
         parameter("hard", &P::hard, "m/s^2", Range{0, 50}, "own braking that needs a reason"),
-        parameter("memory", &P::memory, "s", Range{0, 1000}, "time in which a lane change counts"));
+        parameter("memory", &P::memory, "s", Range{0, 1000}, "time in which a lane change counts"),
+        parameter("reaction", &P::reaction, "s", Range{0, 1000}, "time in which its braking counts"),
+        parameter("horizon", &P::horizon, "s", Range{0, 100},
+                  "who is farther from a conflict brakes for other reasons"),
+        parameter("headway", &P::headway, "s", Range{0, 100}, "who follows farther behind does so, too; and 5 m"));
   }
 
   template <class World>
@@ -74,13 +83,12 @@ struct ImposedBraking {
     if (before == nullptr || record.status != AgentStatus::driving) return;
     auto const& then = (*before)[slot];
     if (then.status == AgentStatus::driving && then.lane.corridor != record.lane.corridor) changed_ = world.time();
-    bool const has_cut_in = world.time() - changed_ <= memory;
+    if (brakes_for_nothing(world, slot, dt)) braked_ = world.time();
+    bool const is_cause = world.time() - changed_ <= memory || world.time() - braked_ <= reaction;
     for (Slot other{}; index_of(other) < world.size(); ++other) {
       double const braking = -static_cast<double>(world.frame().agents[other].acceleration);
       if (other == slot || !in_traffic(world, other) || braking <= std::max(comfortable, hardest_)) continue;
-      if (takes_right_of_way(world, slot, other) ||
-          (follows(world, other, slot) && (has_cut_in || brakes_for_nothing(world, slot, dt))))
-        hardest_ = braking;
+      if (takes_right_of_way(world, slot, other) || (is_cause && follows(world, other, slot))) hardest_ = braking;
     }
   }
 
@@ -88,9 +96,8 @@ struct ImposedBraking {
 
  private:
   template <class World>
-  [[nodiscard]] static bool takes_right_of_way(World& world, Slot slot, Slot other) {
-    constexpr double near = 4.0;  // [s] to the conflict
-    double const way = near * world.frame().agents[other].state.speed;
+  [[nodiscard]] bool takes_right_of_way(World& world, Slot slot, Slot other) const {
+    double const way = horizon * world.frame().agents[other].state.speed;
     return detail::any_mutual_conflict(world, slot, other, 0.0, 0.0, [&](detail::MutualConflict const& mutual) {
       auto const& [conflict, zone, at] = mutual;
       if (conflict.right_of_way != map::RightOfWay::yields || at >= zone.other_end || zone.other_begin - at > way)
@@ -100,11 +107,11 @@ struct ImposedBraking {
   }
 
   template <class World>
-  [[nodiscard]] static bool follows(World& world, Slot other, Slot slot) {
-    constexpr double longest = 3.0, standing = 5.0;  // [s], [m] one farther behind brakes for its own reasons
+  [[nodiscard]] bool follows(World& world, Slot other, Slot slot) const {
+    constexpr double standing = 5.0;  // [m]
     auto const next = world.truth(other).ahead();
     return next && is_valid(next->agent) && next->slot == slot &&
-           next->gap < standing + longest * world.frame().agents[other].state.speed;
+           next->gap < standing + headway * world.frame().agents[other].state.speed;
   }
 
   /// Whether the agent braked hard in the last step though nothing was in the way in which it could stop comfortably.
@@ -119,6 +126,7 @@ struct ImposedBraking {
 
   double hardest_ = 0.0;
   double changed_ = -std::numeric_limits<double>::infinity();  ///< when it changed lanes last [s]
+  double braked_ = -std::numeric_limits<double>::infinity();   ///< when it last braked for nothing [s]
 };
 
 }  // namespace cambium
