@@ -192,8 +192,9 @@ TEST_CASE("a file of parameters says how fast a planner likes to drive; without 
   };
   double const usual = time_with(R"({"idm": {"law": {"minimum_gap": 2.5}}})");
   CHECK(time_with(R"({"idm": {"law": {"desired_speed": 8}}})") > 1.3 * usual);
-  auto const own = cambium::rounded_text(cambium::IdmClassic{}.law.desired_speed);
-  CHECK(time_with(R"({"idm": {"law": {"desired_speed": )" + own + "}}}") != usual);  // also where it is the planner's own
+  auto const own = cambium::detail::rounded_text(cambium::IdmClassic{}.law.desired_speed);
+  CHECK(time_with(R"({"idm": {"law": {"desired_speed": )" + own + "}}}") !=
+        usual);  // also where it is the planner's own
   auto const printed = program.output({"--print-parameters"});
   CHECK(has(printed, "minimum_gap"));
   CHECK_FALSE(has(printed.substr(printed.find("\"idm\""), 400), "desired_speed"));
