@@ -433,3 +433,30 @@ TEST_CASE("driver actions: its driver's plan, unless a macro action is chosen or
   CHECK(mixed.state(one) == plain.state(two));
   CHECK(mixed.state(one).y == doctest::Approx(-1.75).epsilon(0.05));
 }
+
+TEST_CASE("driver actions: one lane change is under way, whoever began it") {
+  using Passing = cb::DriverActions<cb::Mobil>;
+  for (auto const then : {number_of(Kind::change_right), number_of(Kind::keep_gap)}) {
+    Traffic<Passing, cb::ConstantAcceleration> world(straight_road(3, 3000.0));
+    auto const ego = world.add(
+        {.position = {100, -5.25}, .speed = 20, .behavior = Passing{.driver = {.law = {.desired_speed = 25}}}});
+    world.add({.position = {150, -5.25}, .speed = 10, .behavior = cb::ConstantAcceleration{}});
+    double most = 0.0;
+    auto const drive = [&](int steps, auto const& until) {
+      for (int i = 0; i < steps && !until(); ++i) {
+        double const y = world.state(ego).y;
+        REQUIRE(world.step(0.2));
+        most = std::max(most, std::abs(world.state(ego).y - y));
+      }
+    };
+    auto const never = [] { return false; };
+    drive(100, [&] { return world.state(ego).y > -1.78; });  // its driver changes to the left
+    REQUIRE(world.state(ego).y > -1.78);
+    world.memory<Passing>(ego).choose(then);
+    drive(20, never);
+    CHECK(world.state(ego).y == doctest::Approx(then == number_of(Kind::keep_gap) ? -1.75 : -5.25).epsilon(0.1));
+    world.memory<Passing>(ego).choose(Passing::drive);
+    drive(60, never);
+    CHECK(most < 0.6);
+  }
+}

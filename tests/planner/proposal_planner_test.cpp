@@ -31,6 +31,20 @@ TEST_CASE("it brakes in time for a bend, whatever the score") {
   }
 }
 
+TEST_CASE("where its road ends, it drives on to the end of the step, although it leaves the prediction before") {
+  for (double const ahead : {1.0, 2.0, 3.0, 4.0}) {  // of 3 m in a step
+    CandidateSim world(support::straight_road(2, 200));
+    world.add({.position = {200.0 - ahead, -1.75}, .speed = 15, .behavior = Proposal{}});
+    while (world.status(ego) == AgentStatus::driving) {
+      auto const before = world.state(ego);
+      REQUIRE(world.step(0.2));
+      CHECK(world.state(ego).x - before.x ==
+            doctest::Approx(0.1 * (before.speed + world.state(ego).speed)).epsilon(0.02));
+    }
+    CHECK(world.status(ego) == AgentStatus::left_map);
+  }
+}
+
 TEST_CASE("it stops once at a stop sign, and remembers that it did") {
   Proposal const planner;
   CandidateSim world(support::road_with_signal("206"));

@@ -10,6 +10,7 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/portable_math.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/predicted.hpp"
 #include "cambium/planner/search/search_result.hpp"
@@ -64,18 +65,27 @@ struct CandidateWorkspace {
     }
   }
 
-  /// The plan for the next `dt` [s]: what ego does in the predicted world, in equal steps of at most `step` [s]. Ego's
-  /// behaviour there must be `Model`; its memory is read into `memory`. O(steps).
+  /// The plan for the next `dt` [s]: what ego does in the predicted world, in equal steps of at most `step` [s]; where
+  /// it has left traffic there, straight on at its speed. Ego's behaviour there must be `Model`; its memory is read
+  /// into `memory`. O(steps).
   template <class Model, class View>
   [[nodiscard]] Plan<View> drive(View const&, double dt, double step, MemoryOf<Model>& memory) {
     Plan<View> plan;
     auto const steps = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
     double const begin = world->time();
     for (int i = 0; i < steps; ++i) {
+      auto const was = world->frame().agents[ego].status;
       (void)world->step(dt / steps);
       auto const& record = world->frame().agents[ego];
       if (i == 0) plan.action = record.action;
-      plan.trajectory.push_back(record.state);
+      auto next = record.state;
+      if (i > 0 && was != AgentStatus::driving && was != AgentStatus::failed) {
+        next = plan.trajectory.back();
+        auto const along = portable::sin_cos(next.heading);
+        next.x += next.speed * dt / steps * along.cos;
+        next.y += next.speed * dt / steps * along.sin;
+      }
+      plan.trajectory.push_back(next);
       plan.trajectory.back().time = i + 1 == steps ? begin + dt : world->time();
     }
     auto const* const after = std::get_if<World::Behaviors::template index<Model>>(&world->frame().agents[ego].memory);

@@ -67,12 +67,24 @@ struct DriverActions {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    if (!memory.drives) return macro.plan(view, memory.macro, dt);
-    if (memory.macro.change.active() || needs_room(view)) return macro.keep_gap(view, memory.macro, dt);
-    return driver.plan(view, memory.driver, dt);
+    bool const is_driver = memory.drives && !memory.macro.change.active() && !needs_room(view);
+    hand_over(memory, is_driver);
+    if (is_driver) return driver.plan(view, memory.driver, dt);
+    return memory.drives ? macro.keep_gap(view, memory.macro, dt) : macro.plan(view, memory.macro, dt);
   }
 
  private:
+  /// Gives whoever drives next the lane change under way: it would go on later from where the other one had left it.
+  static void hand_over(Memory& memory, bool to_driver) {
+    if constexpr (requires { memory.driver.lateral.change; }) {
+      auto &of_macro = memory.macro.change, &of_driver = memory.driver.lateral.change;
+      auto &from = to_driver ? of_macro : of_driver, &to = to_driver ? of_driver : of_macro;
+      if (from == LaneChange{}) return;
+      if (!to.active()) to = from;
+      from = {};
+    }
+  }
+
   /// Whether the next road user in the lane is one to pass, and so near that the driver may have to brake for it.
   template <class View>
   [[nodiscard]] bool needs_room(View const& view) const {
