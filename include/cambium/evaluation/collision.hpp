@@ -229,8 +229,8 @@ struct Collision {
 /// | the front side of the agent touches the other | yes |
 /// | they touch otherwise | if the agent is not within its lane |
 ///
-/// Neither the right of way counts, nor whether there was time to react. `in_last_step` judges where two touched first
-/// in a step, and by their higher speeds before and after it, so that a stop in that step hides nothing. With a
+/// Neither the right of way counts, nor whether there was time to react. `in_last_step` judges by where two touched
+/// first in a step, and by the higher of their speeds before and after it: a stop in that step hides nothing. With a
 /// `look_ahead`, whether it will touch an object, or an agent that is ahead of its reference point now, if all keep
 /// their velocities. O(agents + objects).
 struct AtFaultCollision {

@@ -135,8 +135,8 @@ namespace detail {
 
 }  // namespace detail
 
-/// Whether an agent in traffic drives in a lane of oncoming traffic, outside all lanes of its route, or back in its
-/// own.
+/// Whether an agent in traffic drives in a lane of oncoming traffic, outside all lanes of its route, or drives back in
+/// its own lane.
 struct OncomingLane {
   static constexpr char const* name = "oncoming_lane";
   static constexpr char const* summary = "drives in a lane of oncoming traffic";

@@ -74,7 +74,8 @@ struct DriverActions {
   }
 
  private:
-  /// Gives whoever drives next the lane change under way: it would go on later from where the other one had left it.
+  /// Gives the lane change under way to whoever drives next: there is only one, and the other one's would be stale when
+  /// it drives again.
   static void hand_over(Memory& memory, bool to_driver) {
     if constexpr (requires { memory.driver.lateral.change; }) {
       auto &of_macro = memory.macro.change, &of_driver = memory.driver.lateral.change;

@@ -129,8 +129,8 @@ class RunJudge {
 
   [[nodiscard]] RunResult& result() { return result_; }
 
-  /// The result of a run that has ended, in which what `fails` names is no success. What collided was neither far nor
-  /// late.
+  /// The result of a run that has ended, in which what `fails` names is no success. After a collision, the least time
+  /// to it and the least clearance are 0.
   [[nodiscard]] RunResult finished(World const& world, std::span<Criterion const> fails) {
     result_.steps = static_cast<std::int64_t>(world.frame().step);
     result_.duration_s = world.time();

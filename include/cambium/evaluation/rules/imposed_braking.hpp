@@ -50,9 +50,7 @@ template <class World>
 /// another road user
 /// - that has the right of way over the agent, in a conflict in which the agent is;
 /// - right behind the agent, which has changed into its lane in the last `memory` [s];
-/// - right behind the agent, which braked harder than `hard` in the last `reaction` [s] although nothing ahead asked
-/// for
-///   that.
+/// - right behind the agent, which in the last `reaction` [s] braked harder than `hard` for nothing.
 /// 0 if none braked harder than `comfortable`. O(agents + conflicts near) per step.
 struct ImposedBraking {
   double comfortable = 2.0;
@@ -73,7 +71,7 @@ struct ImposedBraking {
         parameter("reaction", &P::reaction, "s", Range{0, 1000}, "time in which its braking counts"),
         parameter("horizon", &P::horizon, "s", Range{0, 100},
                   "who is farther from a conflict brakes for other reasons"),
-        parameter("headway", &P::headway, "s", Range{0, 100}, "who follows farther behind does so, too; and 5 m"));
+        parameter("headway", &P::headway, "s", Range{0, 100}, "who follows by more than this and 5 m does so, too"));
   }
 
   template <class World>
