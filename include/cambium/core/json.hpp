@@ -29,8 +29,7 @@ enum class JsonDetail : unsigned char {
 class LaneNames {
  public:
   [[nodiscard]] virtual std::string name(LaneId lane) const = 0;
-  /// Throws `Error` at `where` if there is no such lane.
-  [[nodiscard]] virtual LaneId lane(std::string_view name, std::string const& where) const = 0;
+  [[nodiscard]] virtual LaneId lane(std::string_view name) const = 0;
 
  protected:
   ~LaneNames() = default;

@@ -48,10 +48,10 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     return true;
   }
   bool end_object() override {
-    std::vector<std::string_view> names;
-    for (auto const& member : *open_.back()->members()) names.push_back(member.first);
-    std::sort(names.begin(), names.end());
-    if (auto const twice = std::adjacent_find(names.begin(), names.end()); twice != names.end())
+    names_.clear();
+    for (auto const& member : *open_.back()->members()) names_.push_back(member.first);
+    std::sort(names_.begin(), names_.end());
+    if (auto const twice = std::adjacent_find(names_.begin(), names_.end()); twice != names_.end())
       throw ParameterError(where_, "the key \"" + std::string(*twice) + "\" is there twice in one object",
                            "remove one of them");
     return close();
@@ -106,6 +106,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
   std::string_view text_;
   std::string const& where_;
   JsonValue root_;
+  std::vector<std::string_view> names_;  ///< of the members of an object that ends
   std::vector<JsonValue*> open_;  ///< from the root to the current object or list; parents do not move while open
 };
 

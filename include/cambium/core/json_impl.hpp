@@ -255,7 +255,7 @@ class JsonReader {
         if (word != nullptr && *word == "none") return PlainValue::highest(type);
         if (type.kind == Kind::lane && lanes_ != nullptr) {
           if (word == nullptr) refuse(path, json, "a lane's name, in quotes");
-          return with_bits(type, index_of(lanes_->lane(*word, where(path))));
+          return with_bits(type, index_of(lanes_->lane(*word)));
         }
         return integer(path, type, json);
       case Kind::signed_integer:

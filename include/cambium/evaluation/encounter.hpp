@@ -42,6 +42,7 @@ class PredictedArea {
     constexpr double slow = 1e-3, quickest = 2.0;  // [m/s], [1/s]
     if (std::abs(across_) > slow) rate_ = std::min(quickest, std::abs(across_) / std::max(slow, to_go));
     turn_ = speed_ * corridor_->sharpest_bend + std::abs(place_.heading_error) * rate_;
+    widest_ = std::max(off, to_go);
   }
 
   /// After `time` [s], in which it brakes by `braking` [m/s^2] until it stands.
@@ -62,8 +63,10 @@ class PredictedArea {
 
   /// Its speed when `box` was asked last [m/s].
   [[nodiscard]] double speed_now() const { return speed_now_; }
-  /// Bound on how fast it turns [rad/s].
-  [[nodiscard]] double turn() const { return turn_; }
+  /// Bound on how far the velocities of its corners are from its speed along its heading [m/s].
+  [[nodiscard]] double swing() const { return turn_ * (reach() + widest_) + speed_ - along_; }
+  /// Bound on how fast its velocity turns [m/s^2].
+  [[nodiscard]] double turning() const { return speed_ * turn_; }
   /// Bound on the distance of its corners from its reference point [m].
   [[nodiscard]] double reach() const {
     return std::max(shape_->front, shape_->rear) + std::max(shape_->left, shape_->right);
@@ -75,41 +78,43 @@ class PredictedArea {
   geometry::Shape const* shape_;
   map::LanePlace place_;
   double speed_, along_ = 0.0, across_ = 0.0;
-  double rate_ = 0.0;  ///< by which its motion across dies away [1/s]
-  double turn_ = 0.0, speed_now_ = 0.0;
+  double rate_ = 0.0;    ///< by which its motion across dies away [1/s]
+  double turn_ = 0.0;    ///< bound on how fast it turns [rad/s]
+  double widest_ = 0.0;  ///< bound on its distance from the centre line [m]
+  double speed_now_ = 0.0;
 };
 
 /// When a gap closes first [s]; `longest` if it does not by then. `look(time)` returns the gap [m], and a bound on how
-/// fast it closes within half a second [m/s]. Advances by steps in which it cannot close (conservative advancement;
-/// Mirtich 1996), so that it misses nothing, to 1 cm.
+/// fast it closes then [m/s], which grows by at most `quickening` [m/s^2]. Advances by steps in which it cannot close
+/// (conservative advancement; Mirtich 1996), so that it misses nothing, to 1 cm.
 template <class Look>
-[[nodiscard]] double first_contact(double longest, Look const& look) {
-  constexpr double touching = 0.01, shortest_step = 1e-3, longest_step = 0.5;  // [m], [s]
+[[nodiscard]] double first_contact(double longest, double quickening, Look const& look) {
+  constexpr double touching = 0.01, shortest_step = 1e-3;  // [m], [s]
   for (double time = 0.0; time < longest;) {
     auto const [gap, closing] = look(time);
     if (gap <= touching) return time;
-    time += closing * longest_step <= gap ? longest_step : std::max(shortest_step, gap / closing);
+    double const fastest = std::sqrt(closing * closing + 2.0 * quickening * gap);  // when it has closed
+    time += std::max(shortest_step, 2.0 * gap / (closing + fastest));
   }
   return longest;
 }
 
 /// When an agent touches another one, or a static object, if it brakes by `braking` [m/s^2]; `longest` if it does not
-/// by then [s]. O(steps): a few where the two approach, 2 a second where they stay apart.
+/// by then [s]. O(steps): a few, more where the two stay near each other.
 [[nodiscard]] inline double time_of_contact(PredictedArea& own, PredictedArea& other, double longest, double braking) {
-  double const bends = own.turn() * own.reach() + other.turn() * other.reach() +
-                       0.5 * (own.speed() * own.turn() + other.speed() * other.turn() + braking);
-  return first_contact(longest, [&](double time) {
+  double const swing = own.swing() + other.swing();
+  return first_contact(longest, own.turning() + other.turning() + braking, [&](double time) {
     auto const a = own.box(time, braking), b = other.box(time, 0.0);
     double const x = own.speed_now() * a.cos - other.speed_now() * b.cos;
     double const y = own.speed_now() * a.sin - other.speed_now() * b.sin;
-    return std::pair(geometry::separation(a, b), portable::hypot(x, y) + bends);
+    return std::pair(geometry::separation(a, b), portable::hypot(x, y) + swing);
   });
 }
 [[nodiscard]] inline double time_of_contact(PredictedArea& own, geometry::Polygon const& object, double longest,
                                             double braking) {
-  return first_contact(longest, [&](double time) {
+  return first_contact(longest, 0.0, [&](double time) {
     auto const gap = geometry::distance(own.box(time, braking), object);
-    return std::pair(gap, own.speed_now() + own.turn() * own.reach());
+    return std::pair(gap, own.speed_now() + own.swing());
   });
 }
 

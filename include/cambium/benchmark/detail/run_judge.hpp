@@ -75,12 +75,31 @@ struct RunRule {
 
 /// Whether a run did what a criterion is about.
 [[nodiscard]] inline bool meets(RunResult const& result, Criterion criterion, CriterionBounds const& bounds) {
-  if (criterion == Criterion::imposed_braking) return result.imposed_braking > bounds.imposed_braking;
-  if (criterion == Criterion::straddling) return result.straddling_s > bounds.straddling;
-  using R = RunResult;
-  constexpr bool R::*fields[] = {&R::infeasible, &R::red_light, &R::stop_sign,  &R::right_of_way,
-                                 &R::wrong_way,  &R::speeding,  &R::solid_line, &R::off_road};
-  return criterion == Criterion::discomfort ? result.discomfort : result.*fields[static_cast<std::size_t>(criterion)];
+  switch (criterion) {
+    case Criterion::infeasible:
+      return result.infeasible;
+    case Criterion::red_light:
+      return result.red_light;
+    case Criterion::stop_sign:
+      return result.stop_sign;
+    case Criterion::right_of_way:
+      return result.right_of_way;
+    case Criterion::wrong_way:
+      return result.wrong_way;
+    case Criterion::speeding:
+      return result.speeding;
+    case Criterion::solid_line:
+      return result.solid_line;
+    case Criterion::off_road:
+      return result.off_road;
+    case Criterion::imposed_braking:
+      return result.imposed_braking > bounds.imposed_braking;
+    case Criterion::straddling:
+      return result.straddling_s > bounds.straddling;
+    case Criterion::discomfort:
+      return result.discomfort;
+  }
+  return false;
 }
 
 /// The absolute value of evaluator `E`.
@@ -98,30 +117,27 @@ template <class World>
 class RunJudge {
  public:
   RunJudge(World& world, std::span<AgentId const> own, CriterionBounds const& bounds)
-      : own_(own.begin(), own.end()),
-        drifts_(own.size()),
-        rules_(own.size(), run_rules()),
-        against_(own.size()),
-        ego_(world.slot_of(own.front())),
-        bounds_(bounds) {
+      : ego_(world.slot_of(own.front())), bounds_(bounds) {
+    for (auto const id : own) own_.push_back({id, world.slot_of(id)});
     std::get<Score>(metrics_).recorder = bounds.score;
     observe(world, 0.0);
   }
 
   void observe(World& world, double dt) {
     std::apply([&](auto&... metric) { (metric.recorder.observe(world, ego_, dt), ...); }, metrics_);
-    for (std::size_t i = 0; i < own_.size(); ++i)
-      for (auto& rule : rules_[i]) rule.monitor(world, world.slot_of(own_[i]));
-    for (std::size_t i = 0; i < own_.size(); ++i) ask_whether_possible(world, own_[i], drifts_[i]);
+    for (auto& own : own_) {
+      for (auto& rule : own.rules) rule.monitor(world, own.slot);
+      own.in_oncoming_lanes.observe(world, own.slot, dt);
+      ask_whether_possible(world, own);
+    }
     off_road_.see(OffRoad{}(world, ego_), world.time());
     discomfort_.see(1.0 - std::get<Score>(metrics_).recorder.parts().comfort, world.time());
     imposed_.see(std::get<Imposed>(metrics_).recorder.value(), world.time());
     straddling_.see(std::get<Straddling>(metrics_).recorder.value(), world.time());
     result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
-    for (std::size_t i = 0; i < own_.size(); ++i) against_[i].observe(world, world.slot_of(own_[i]), dt);
     auto const pair = AnyCollision{}.pair(world);
-    for (auto const agent : own_)
-      if (auto const slot = world.slot_of(agent); pair || !in_traffic(world, slot)) note_collision(world, slot);
+    for (auto const& own : own_)
+      if (pair || !in_traffic(world, own.slot)) note_collision(world, own.slot);
     bool const others = pair && !is_own(pair->first) && !is_own(pair->second);
     result_.others_collided += others && !others_collide_;
     others_collide_ = others;
@@ -149,6 +165,15 @@ class RunJudge {
   }
 
  private:
+  /// An agent under test, and what is known of its way so far.
+  struct Own {
+    AgentId id;
+    Slot slot;
+    Infeasible::Drift drift{};
+    std::vector<RunRule> rules = run_rules();
+    Integral<OncomingLane> in_oncoming_lanes{};  ///< [s]
+  };
+
   /// The largest value so far, and when it was reached.
   struct Peak {
     double value = 0.0, time = 0.0;
@@ -157,16 +182,16 @@ class RunJudge {
     }
   };
 
-  void ask_whether_possible(World const& world, AgentId agent, Infeasible::Drift& drift) {
-    auto const finding = bounds_.infeasible.finding(world, world.slot_of(agent), drift);
+  void ask_whether_possible(World const& world, Own& own) {
+    auto const finding = bounds_.infeasible.finding(world, own.slot, own.drift);
     if (finding.flaw == Infeasible::Flaw::none) return;
     result_.infeasible = true;
     ++result_.infeasible_steps;
     if (finding.excess() <= worst_.finding.excess()) return;
-    worst_ = {world.time(), agent, finding};
+    worst_ = {world.time(), own.id, finding};
   }
 
-  [[nodiscard]] bool is_own(AgentId agent) const { return std::ranges::find(own_, agent) != own_.end(); }
+  [[nodiscard]] bool is_own(AgentId agent) const { return std::ranges::find(own_, agent, &Own::id) != own_.end(); }
 
   /// Notes what the agent at `slot` touches or touched during the last step, in which it may have left traffic.
   void note_collision(World const& world, Slot slot) {
@@ -220,17 +245,18 @@ class RunJudge {
     };
     std::vector<Item> items;
     auto const by = [&](AgentId agent) {
-      return agent == own_.front() ? std::string() : " by agent " + to_string(agent);
+      return agent == own_.front().id ? std::string() : " by agent " + to_string(agent);
     };
     auto const seconds = [](double time) { return rounded_text(time) + " s"; };
-    for (std::size_t i = 0; i < own_.size(); ++i)
-      for (auto& rule : rules_[i]) {
+    for (auto& own : own_)
+      for (auto& rule : own.rules) {
         rule.monitor.finish();
-        if (rule.is_broken == &RunResult::wrong_way && against_[i].value() < bounds_.wrong_way - same_time) continue;
+        bool const is_short = own.in_oncoming_lanes.value() < bounds_.wrong_way - same_time;
+        if (rule.is_broken == &RunResult::wrong_way && is_short) continue;
         auto const& located = rule.monitor.violations();
         for (auto const& violation : located) {
           result_.*rule.is_broken = true;
-          auto text = rule.name + by(own_[i]);
+          auto text = rule.name + by(own.id);
           if (is_valid(violation.other)) text += " to agent " + to_string(violation.other);
           if (violation.end > violation.begin) text += " until " + seconds(violation.end);
           if (&violation == &located.back() && rule.monitor.count() > located.size())
@@ -327,10 +353,7 @@ class RunJudge {
                  NonNegative<&R::largest_lateral_acceleration, Most<SizeOf<LateralAcceleration>>>,
                  Metric<&R::hard_brakings, Times<HardBraking>>, Metric<&R::rss_compliance, RssCompliance>, Score>;
 
-  std::vector<AgentId> own_;
-  std::vector<Infeasible::Drift> drifts_;        ///< of each
-  std::vector<std::vector<RunRule>> rules_;      ///< that each keeps
-  std::vector<Integral<OncomingLane>> against_;  ///< time of each in lanes of oncoming traffic [s]
+  std::vector<Own> own_;
   Slot ego_;
   CriterionBounds bounds_;
   RunResult result_;

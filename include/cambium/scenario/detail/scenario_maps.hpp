@@ -20,12 +20,12 @@ class LaneTable final : public LaneNames {
  public:
   LaneTable() = default;
   explicit LaneTable(std::vector<std::string> const& names) {
-    for (auto const& name : names) static_cast<void>(lane(name, {}));
+    for (auto const& name : names) static_cast<void>(lane(name));
   }
 
   [[nodiscard]] std::vector<std::string> const& names() const { return names_; }
   [[nodiscard]] std::string name(LaneId lane) const override { return names_[index_of(lane)]; }
-  [[nodiscard]] LaneId lane(std::string_view name, std::string const& where) const override;
+  [[nodiscard]] LaneId lane(std::string_view name) const override;
 
   /// The lane of `map` that a number stands for. Throws `ParameterError` at `where` if the map has no such lane.
   [[nodiscard]] LaneId lane_in(Map const& map, LaneId number, std::string const& where) const;

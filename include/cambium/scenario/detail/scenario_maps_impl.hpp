@@ -19,7 +19,7 @@
 
 namespace cambium::detail {
 
-CAMBIUM_COLD LaneId LaneTable::lane(std::string_view name, std::string const&) const {
+CAMBIUM_COLD LaneId LaneTable::lane(std::string_view name) const {
   auto const known = numbers_.find(name);
   if (known != numbers_.end()) return known->second;
   auto const number = static_cast<LaneId>(names_.size());
@@ -64,9 +64,8 @@ CAMBIUM_COLD LaneId LaneTable::number_of(Map const& map, LaneId id) const {
     throw ParameterError("lane " + to_string(id), "is not in its map", "take lanes from the scenario's map");
   auto const& lane = map.lane(id);
   std::string const direction = !is_valid(lane.opposite) ? "" : lane.along_road ? "/forward" : "/backward";
-  return this->lane(
-      map.road(lane.road).name + "/" + std::to_string(lane.section) + "/" + std::to_string(lane.number) + direction,
-      {});
+  return this->lane(map.road(lane.road).name + "/" + std::to_string(lane.section) + "/" + std::to_string(lane.number) +
+                    direction);
 }
 
 CAMBIUM_COLD void exchange_lanes(TypeInfo const& type, void* object, Map const& map, LaneTable const& table,
