@@ -240,7 +240,7 @@ TEST_CASE("verdicts that another judge changed are found with their reasons, als
   auto const found = compare_against({old}, {judged}, "old.db", "new.db");
   REQUIRE(found.list.size() == 1);
   CHECK(found.missing.empty());
-  CHECK(found.list.front().set == "merging (by title and seeds; the hashes differ)");
+  CHECK(found.list.front().set == "merging (by title and seeds; the sets differ, in their criteria or otherwise)");
   CHECK(change_of(found.list.front(), "red_light").verdict == Finding::worse);
   CHECK(change_of(found.list.front(), "violations").after == doctest::Approx(27.0 / 40));
   auto report = make_report({judged});

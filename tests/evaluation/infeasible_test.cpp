@@ -247,13 +247,15 @@ TEST_CASE("small errors of each step add up, and fade") {
     }
     return found;
   };
-  CHECK(flaw_after(100, 0.02, 0.02) == Flaw::none);
+  CHECK(flaw_after(100, 0.004, 0.004) == Flaw::none);
+  drift = {};
+  CHECK(flaw_after(100, 0.0, 0.006) == Flaw::side_drift);
   drift = {};
   CHECK(flaw_after(1, 0.1, 0.0) == Flaw::none);
   CHECK(flaw_after(1, 0.1, 0.0) == Flaw::drift);
   drift = {};
   CHECK(flaw_after(1, 0.0, -0.1) == Flaw::none);
-  CHECK(flaw_after(10, 0.0, 0.0) == Flaw::none);
+  CHECK(flaw_after(60, 0.0, 0.0) == Flaw::none);
   CHECK(flaw_after(1, 0.0, -0.1) == Flaw::none);
   CHECK(flaw_after(1, 0.0, -0.1) == Flaw::side_drift);
 }
@@ -278,11 +280,11 @@ TEST_CASE("small errors are as small in short steps as in long ones") {
   };
   for (double const dt : {0.01, 0.05, 0.1, 0.2, 0.25}) {
     CAPTURE(dt);
-    CHECK(flaw(dt, 0.08, 0.08, 0.0, 8.0) == Flaw::none);
-    CHECK(flaw(dt, 0.0, 0.0, 0.015, 0.0) == Flaw::none);
-    CHECK(flaw(dt, 0.3, 0.0, 0.0, 0.0) == Flaw::drift);
-    CHECK(flaw(dt, 0.0, 0.2, 0.0, 0.0) == Flaw::side_drift);
-    CHECK(flaw(dt, 0.0, 0.0, 0.15, 0.0) == Flaw::turn_drift);
-    CHECK(flaw(dt, 0.0, 0.0, 0.0, 8.15) == Flaw::speed_drift);
+    CHECK(flaw(dt, 0.025, 0.025, 0.0, 8.0) == Flaw::none);
+    CHECK(flaw(dt, 0.0, 0.0, 0.004, 0.0) == Flaw::none);
+    CHECK(flaw(dt, 0.05, 0.0, 0.0, 0.0) == Flaw::drift);
+    CHECK(flaw(dt, 0.0, 0.02, 0.0, 0.0) == Flaw::side_drift);  // it stands
+    CHECK(flaw(dt, 0.0, 0.0, 0.03, 0.0) == Flaw::turn_drift);
+    CHECK(flaw(dt, 0.0, 0.0, 0.0, 8.05) == Flaw::speed_drift);
   }
 }

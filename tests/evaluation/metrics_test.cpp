@@ -153,6 +153,27 @@ TEST_CASE("post-encroachment time is the time between two vehicles at a crossing
       CHECK(std::abs(one - expected) < 0.06);
     }
   }
+  // However long the steps are, and wherever the frames lie.
+  auto const wide = support::straight_road(12, 300);
+  for (double const step : {0.05, 0.2, 0.5, 1.0})
+    for (int i = 0; i < 40; ++i) {
+      CAPTURE(step);
+      CAPTURE(i);
+      double const speed = 15.0 + i % 2 * 10.0, off = 0.025 * i * step * speed;
+      Sim fast(wide);
+      fast.add({.position = {20.0 - off, -21.0}, .speed = speed, .behavior = ConstantAcceleration{}, .id = AgentId{1}});
+      Sim::AgentSpec crosses{.position = {80.0, -81.0 - 1.2 * speed - off},
+                             .heading = right,
+                             .speed = speed,
+                             .behavior = ConstantAcceleration{},
+                             .id = AgentId{2}};
+      crosses.way = {{80.0, -200.0}, {80.0, 200.0}};
+      fast.add(crosses);
+      auto const found =
+          observed(fast, AgentId{1}, PostEncroachmentTime{}, static_cast<int>(std::ceil(9.0 / step)), step).value();
+      double const apart = 1.2 - (geometry::car().length() + geometry::car().width()) / speed;
+      CHECK(found == doctest::Approx(apart).epsilon(0.02 + 2.0 * geometry::car().length() / speed / apart));
+    }
   auto const after = [](Sim const& world) { return observed(world, AgentId{2}, PostEncroachmentTime{}, 60).value(); };
   CHECK(std::isnan(after(following(10.0, 10.0, 10.0, ConstantAcceleration{}))));
   CHECK(after(following(10.0, 5.0, 20.0, ConstantAcceleration{})) == 0.0);  // they touch
@@ -232,9 +253,11 @@ TEST_CASE("the closed-loop score punishes each fault by nuPlan's bounds and weig
   CHECK(score_of(calm, 249.0) == doctest::Approx((11.0 + 5.0 * 50.0 / 249.0) / 16.0));
   CHECK(score_of(calm, 251.0) == 0.0);  // less than a fifth of the way
   CHECK(closing(9.6, 20.0, 10.0) == 1.0);
-  CHECK(closing(9.4, 20.0, 10.0) == doctest::Approx(11.0 / 16.0));  // a time to collision below 0.95 s
-  CHECK(closing(0.012, 0.006, 0.0) == doctest::Approx(11.0 / 16.0));
-  CHECK(closing(0.012, 0.004, 0.0) == 1.0);  // it stands
+  CHECK(closing(9.4, 20.0, 10.0) == doctest::Approx(11.0 / 16.0));    // a time to collision below 0.95 s
+  CHECK(closing(0.012, 0.006, 0.0) == 1.0);                           // 2 s
+  CHECK(closing(0.012, 0.015, 0.0) == doctest::Approx(11.0 / 16.0));  // 0.8 s
+  CHECK(closing(0.009, 0.006, 0.0) == doctest::Approx(11.0 / 16.0));  // touches, to 1 cm
+  CHECK(closing(0.009, 0.004, 0.0) == 1.0);                           // it stands
 
   Sim off(support::straight_road(1, 300));
   off.add({.position = {100, -3.2}, .speed = 5.0, .behavior = ConstantAcceleration{}, .id = AgentId{2}});

@@ -517,13 +517,14 @@ TEST_CASE("a lane change breaks the rule where the road marks forbid it") {
 
 namespace {
 
-/// The four-way crossing's or the junction's way of an agent that yields to another one, and that one's way.
+/// A junction's way of an agent that yields to another one, and that one's way.
 struct WhoYields {
-  std::shared_ptr<Map const> map = support::own_map("intersection_3way.xodr");
+  std::shared_ptr<Map const> map;
   map::Route own, other;
   map::ConflictZone zone;
+  LightId light = none<LightId>;  ///< of the other one
 
-  WhoYields() {
+  explicit WhoYields(std::string const& file = "intersection_3way.xodr") : map(support::own_map(file)) {
     for (auto const& lane : map->lanes()) {
       if (!lane.drivable() || !lane.predecessors.empty()) continue;
       for (auto const inside : lane.successors) {
@@ -534,6 +535,7 @@ struct WhoYields {
           if (conflict.right_of_way == map::RightOfWay::yields && !conflict.zones[0][0].empty() &&
               conflict.kind == map::OverlapKind::crossing && !map->lane(conflict.other).predecessors.empty()) {
             zone = conflict.zones[0][0];
+            light = conflict.other_light;
             other = through(conflict.other);
             return;
           }
@@ -591,6 +593,115 @@ TEST_CASE("an agent must give way to a vehicle that has the right of way and is 
   CHECK_FALSE(in(0.5, 10));
   CHECK(in(-0.5, -0.5));
   CHECK_FALSE(in(-0.5, -(at.zone.other_end - at.zone.other_begin) - 1));
+}
+
+TEST_CASE("whoever takes the right of way of another imposes that one's braking, unless it brakes for somebody else") {
+  WhoYields const at;
+  auto const imposes = [&](WhoYields const& there, double way, double other_way, map::LightPlan const& plan = {},
+                           double leader_way = 0.0) {
+    auto world = there.world(way, other_way, 3, 10, ConstantAcceleration{});
+    if (is_valid(there.light)) world.set_light(there.light, plan);
+    if (leader_way > 0.0) {
+      auto const lane = there.other.lanes.front();
+      add_on(world, lane, world.map().lane(lane).length() + there.zone.other_begin - leader_way, 10,
+             ConstantAcceleration{}, there.other);
+    }
+    world.set_behavior(world.roster().agents[1].id, ConstantAcceleration{.acceleration = -5.0});
+    ImposedBraking metric;
+    REQUIRE(world.step(dt));
+    metric.observe(world, Slot{0}, dt);
+    return metric.value();
+  };
+  CHECK(imposes(at, 0.0, 20.0) == doctest::Approx(5.0));
+  CHECK(imposes(at, 3.0, 20.0) == 0.0);            // it is not in the way yet
+  CHECK(imposes(at, 0.0, 45.0) == 0.0);            // the other one is more than 4 s away
+  CHECK(imposes(at, 0.0, 25.0, {}, 17.0) == 0.0);  // it has a leader of its own
+  WhoYields const lit("intersection_4way.xodr");
+  REQUIRE(is_valid(lit.light));
+  double const before_line = lit.zone.other_begin - lit.zone.other_line + front + 5.0;
+  CHECK(imposes(lit, 0.0, before_line, {.cycle = 100, .green_begin = 0, .green_end = 50}) == doctest::Approx(5.0));
+  CHECK(imposes(lit, 0.0, before_line, {.cycle = 100, .green_begin = -50, .green_end = 0, .yellow = 3}) == 0.0);
+  CHECK(imposes(lit, 0.0, before_line, {.cycle = 100, .green_begin = 50, .green_end = 99}) == 0.0);
+  CHECK(imposes(lit, 0.0, before_line - 9.0, {.cycle = 100, .green_begin = 50, .green_end = 99}) ==
+        doctest::Approx(5.0));  // it is past its line
+}
+
+namespace {
+
+/// What the ego imposes that brakes for a step on a lane, at `s` at 10 m/s; a follower, `gap` behind, brakes `later`.
+double imposed_by_braking(std::shared_ptr<Map const> const& map, LaneId lane, double s, double later = dt,
+                          double gap = 10.0, map::LightPlan const& plan = {}) {
+  Sim world(map);
+  for (auto const& light : map->lights()) world.set_light(light.id, plan);
+  auto const ego = add_on(world, lane, s, 10, ConstantAcceleration{-5.0});
+  auto const follower = add_on(world, lane, s - length - gap, 10, ConstantAcceleration{});
+  ImposedBraking metric;
+  while (world.time() < later + dt / 2) {
+    REQUIRE(world.step(dt));
+    metric.observe(world, Slot{0}, dt);
+    world.set_behavior(ego, ConstantAcceleration{});
+    if (world.time() > later - dt / 2) world.set_behavior(follower, ConstantAcceleration{-3.0});
+  }
+  return metric.value();
+}
+
+}  // namespace
+
+TEST_CASE("whoever brakes hard for nothing imposes the braking of who follows at once; with a reason, nothing") {
+  auto const straight = support::straight_road(1, 500);
+  auto const lane = straight->lanes().front().id;
+  auto const imposes = [&](auto const&... arguments) { return imposed_by_braking(straight, lane, arguments...); };
+  CHECK(imposes(200.0) == doctest::Approx(3.0));
+  CHECK(imposes(200.0, 1.8) == doctest::Approx(3.0));
+  CHECK(imposes(200.0, 2.4) == 0.0);  // long after it
+  CHECK(imposes(200.0, 0.2, 33.0) == doctest::Approx(3.0));
+  CHECK(imposes(200.0, 0.2, 37.0) == 0.0);  // too far behind to be forced
+  CHECK(imposes(475.0) == 0.0);             // the lane ends
+  CHECK(imposes(440.0) == doctest::Approx(3.0));
+  for (auto const& [radius, expected] : {std::pair{50.0, 0.0}, {200.0, 3.0}}) {
+    auto const bend = support::straight_road(1, 300, 1.0 / radius);
+    CHECK(imposed_by_braking(bend, bend->lanes().front().id, 100.0) == doctest::Approx(expected));
+  }
+  auto const lit = support::road_with_signal("1000001");
+  auto const at_light = [&](double s, map::LightPlan const& plan) {
+    return imposed_by_braking(lit, lit->lanes().front().id, s, dt, 10.0, plan);
+  };
+  map::LightPlan const red{.cycle = 100, .green_begin = 50, .green_end = 99};
+  CHECK(at_light(180.0, red) == 0.0);
+  CHECK(at_light(205.0, red) == doctest::Approx(3.0));
+  CHECK(at_light(180.0, {.cycle = 100, .green_begin = 0, .green_end = 50}) == doctest::Approx(3.0));
+  CHECK(at_light(180.0, {}) == doctest::Approx(3.0));  // it is off
+  WhoYields const at;
+  auto const before = at.own.lanes.front();
+  CHECK(imposed_by_braking(at.map, before, at.map->lane(before).length() - 5.0) == 0.0);  // a junction
+}
+
+TEST_CASE("who has cut in imposes the braking of who follows, for some seconds") {
+  auto const imposes = [](double later) {
+    Sim world(support::straight_road(2, 500));
+    auto const ego = add(world, 100, middle, 10, StraightOn{});
+    auto state = world.state(ego);
+    state.heading = 0.15;
+    world.set_state(ego, state);
+    auto const follower = add(world, 85, left, 10);
+    ImposedBraking metric;
+    double changed = 1e9;
+    while (world.time() < changed + later) {
+      auto const lane = world.record(ego).lane.corridor;
+      REQUIRE(world.step(dt));
+      metric.observe(world, Slot{0}, dt);
+      if (world.record(ego).lane.corridor != lane) {
+        changed = world.time();
+        world.set_state(ego, {.time = world.time(), .x = world.state(ego).x, .y = left, .speed = 10});
+      }
+      if (world.time() > changed + later - 2 * dt) world.set_behavior(follower, ConstantAcceleration{-3.0});
+    }
+    REQUIRE(changed < 1e9);
+    return metric.value();
+  };
+  CHECK(imposes(1.0) == doctest::Approx(3.0));
+  CHECK(imposes(4.6) == doctest::Approx(3.0));
+  CHECK(imposes(5.8) == 0.0);
 }
 
 TEST_CASE("the zip partner is a vehicle beside, between an agent and its leader, where their lanes merge") {

@@ -131,7 +131,8 @@ inline void judge_changes(Comparisons& comparisons) {
   std::size_t tests = 0;
   for (auto const& pair : pairs) {
     Comparison comparison{.set = pair.after->set_label, .before = pair.before->label, .after = pair.after->label};
-    if (pair.before->set_hash != pair.after->set_hash) comparison.set += " (by title and seeds; the hashes differ)";
+    if (pair.before->set_hash != pair.after->set_hash)
+      comparison.set += " (by title and seeds; the sets differ, in their criteria or otherwise)";
     for_each_common(*pair.before, *pair.after, [&](auto const& a, auto const& b) {
       ++comparison.scenarios;
       if (a.result.success && !b.result.success) {

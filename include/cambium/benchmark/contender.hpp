@@ -227,8 +227,8 @@ inline void require_answers(Map const& map, std::span<Criterion const> fails) {
                          "leave it out of \"fails\", or give the map limits");
 }
 
-/// Runs a world until its ego is at its goal, collides, leaves the road or the map, time is up, or an agent of `own`
-/// (the ego first) fails. Without a goal, the ego succeeds at the end of its route. Calls
+/// Runs a world until its ego is at its goal, collides, or leaves its route or the map, time is up, or an agent of
+/// `own` (the ego first) fails. Without a goal, the ego succeeds at the end of its route. Calls
 /// `after_step(world, result)`, which may add an error.
 template <class World, class AfterStep>
 [[nodiscard]] RunResult run_world(World& world, std::span<AgentId const> own, RunOptions const& options,
@@ -251,7 +251,8 @@ template <class World, class AfterStep>
     bool const done =
         has_goal ? world.reached_goal(slot) : status == AgentStatus::arrived || status == AgentStatus::left_map;
     result.success = done && !result.collision && result.error.empty();
-    result.off_route = result.off_route || (has_goal && !done && is_away && !result.collision && result.error.empty());
+    bool const is_lost = has_goal ? !done && is_away : status == AgentStatus::off_route;
+    result.off_route = is_lost && !result.collision && result.error.empty();
     is_over = !result.error.empty() || result.collision || done || is_away;
     result.timed_out = !is_over && world.frame().step >= most;
     is_over = is_over || result.timed_out;

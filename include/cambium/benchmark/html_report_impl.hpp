@@ -169,10 +169,14 @@ namespace detail {
       auto const key = "\"" + std::to_string(index) + "\":";
       if (!row.result.error.empty()) add(errors, key + json_string(row.result.error));
       std::string items;
+      auto const criteria = split(row.result.failed_by, " ");
+      auto const is_decisive = [&](std::string_view text) {
+        return std::ranges::any_of(criteria, [&](auto one) { return !one.empty() && text.starts_with(one); });
+      };
       double const step = row.result.steps > 0 ? row.result.duration_s / static_cast<double>(row.result.steps) : 0.0;
       for (auto const& [time, text] : violations_of(row.result))
         add(items, "[" + std::to_string(step > 0.0 ? std::llround(time / step) : 0) + "," +
-                       json_string(rounded_text(time) + " s " + text) + "]");
+                       json_string(rounded_text(time) + " s " + text) + (is_decisive(text) ? ",1]" : "]"));
       if (!items.empty()) add(violations, key + "[" + items + "]");
       if (is_valid(row.result.hit)) add(hits, key + "\"" + to_string(row.result.hit) + "\"");
       add(seeds, "\"" + std::to_string(row.seed) + "\"");

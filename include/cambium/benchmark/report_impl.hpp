@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <thread>
 #include <utility>
@@ -171,6 +173,18 @@ namespace detail {
   return table;
 }
 
+/// How many runs failed by which criteria: "infeasible 5, red_light 2"; empty if none did.
+[[nodiscard]] inline std::string failed_by(ResultGroup const& group) {
+  std::map<std::string, std::size_t, std::less<>> counts;
+  for (auto const& row : group.rows)
+    for (auto const criterion : split(row.result.failed_by, " "))
+      if (!criterion.empty()) ++counts[std::string(criterion)];
+  std::string text;
+  for (auto const& [criterion, count] : counts)
+    text += (text.empty() ? "" : ", ") + criterion + " " + std::to_string(count);
+  return text;
+}
+
 inline constexpr char const* finding_words[] = {"", "better", "worse"};
 
 /// "3 (time-out), 7": at most twelve. `why`: of each, or empty.
@@ -206,13 +220,13 @@ inline constexpr char const* finding_words[] = {"", "better", "worse"};
          is_judged ? p_text(change.p_adjusted) : "",
          change.verdict == Finding::worse ? "WORSE" : finding_words[static_cast<std::size_t>(change.verdict)]});
   }
-  if (table.rows.empty())
-    table.note = "No difference.";
-  else if (!equal.empty())
-    table.note = "Equal in each scenario: " + equal + ".";
   if (!comparison.lost.empty())
-    table.note += " Success lost in scenarios " + numbers_text(comparison.lost, comparison.why_lost) + ".";
-  if (!comparison.won.empty()) table.note += " Success won in scenarios " + numbers_text(comparison.won) + ".";
+    table.note = "Success lost in scenarios " + numbers_text(comparison.lost, comparison.why_lost) + ". ";
+  if (!comparison.won.empty()) table.note += "Success won in scenarios " + numbers_text(comparison.won) + ". ";
+  if (table.rows.empty())
+    table.note += "No difference.";
+  else if (!equal.empty())
+    table.note += "Equal in each scenario: " + equal + ".";
   return table;
 }
 
@@ -284,6 +298,9 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
     add(detail::measure_table(report, set, shares, "outcomes"));
     add(detail::measure_table(report, set, rules, "violations"));
     tables.back().note = "Shares of the scenarios, the smallest as counts; in brackets: 95 % intervals [%] (Wilson).";
+    for (auto const g : set)
+      if (auto const why = detail::failed_by(report.groups[g]); !why.empty())
+        tables.back().note += " " + report.groups[g].label + " failed by " + why + ".";
     for (std::size_t begin = 0; begin < means.size(); begin += columns) {
       auto const first = means.begin() + static_cast<std::ptrdiff_t>(begin);
       auto const last = means.begin() + static_cast<std::ptrdiff_t>(std::min(means.size(), begin + columns));
@@ -332,6 +349,9 @@ CAMBIUM_COLD std::vector<Table> summary_of(std::vector<ResultGroup> const& group
                                                  : detail::short_text(value));
       }
     }
+    for (auto const g : set)
+      if (auto const why = detail::failed_by(groups[g]); !why.empty())
+        table.note += (table.note.empty() ? "" : " ") + groups[g].label + " failed by " + why + ".";
     tables.push_back(std::move(table));
   }
   if (sets.size() > 1) tables.push_back(detail::overview_of(groups));

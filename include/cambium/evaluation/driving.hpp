@@ -10,7 +10,9 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/portable_math.hpp"
 #include "cambium/core/state.hpp"
+#include "cambium/evaluation/collision.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -262,6 +264,29 @@ struct Gap {
   }
 };
 
+namespace detail {
+
+/// The next road user or object ahead in the agent's lane, also of those that merge as soon as they have. Whom it
+/// passes in one lane, without touching, is not ahead. O(1), while it passes somebody O(agents).
+template <class World>
+[[nodiscard]] std::optional<RoadUser> next_in_lane(World& world, Slot slot) {
+  auto const view = world.truth(slot);
+  auto next = view.ahead({.merging = Merging::ignored});
+  auto const touches = [&](RoadUser const& user) {
+    auto const own = box_at(world, slot);
+    return is_valid(user.agent) ? geometry::intersects(own, box_at(world, user.slot))
+                                : geometry::intersects(own, world.roster().objects[index_of(user.slot)].outline);
+  };
+  if (!next || next->gap >= 0.0 || touches(*next)) return next;
+  next.reset();
+  view.around(view.place(), Look::horizon, [&](RoadUser const& user) {
+    if (user.s > view.place().s && user.gap >= 0.0 && (!next || user.gap < next->gap)) next = user;
+  });
+  return next;
+}
+
+}  // namespace detail
+
 /// Time until the agent's front reaches the present rear of the next road user ahead in its lane, at most `longest`
 /// [s] (time headway, THW); that, too, where nobody is ahead or it stands.
 struct TimeHeadway {
@@ -275,7 +300,7 @@ struct TimeHeadway {
 
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
-    auto const next = world.truth(slot).ahead({.merging = Merging::ignored});
+    auto const next = detail::next_in_lane(world, slot);
     double const speed = world.frame().agents[slot].state.speed;
     return next && speed > 0.0 ? std::clamp(next->gap / speed, 0.0, longest) : longest;
   }

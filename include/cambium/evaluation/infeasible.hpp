@@ -46,7 +46,7 @@ struct Infeasible {
     turn_drift,
     speed_drift
   };
-  /// Sums of an agent's errors in its last steps; an error fades with a time constant of 1 s.
+  /// Sums of an agent's errors in its last steps; an error fades with a time constant of 5 s.
   struct Drift {
     double along = 0.0;   ///< by how much its way was longer than its speeds say [m]
     double across = 0.0;  ///< how far it led to the left of its headings [m]
@@ -72,10 +72,10 @@ struct Infeasible {
                                  {"changes its speed by", " m/s^2"},
                                  {"turns by", " rad in a step"},
                                  {"needs", " m/s^2 of its tyres"},
-                                 {"drifts from its speeds by", " m in a second"},
-                                 {"drifts off its headings by", " m in a second"},
-                                 {"turns more than it can, by", " rad in a second"},
-                                 {"changes its speed more than it can, by", " m/s in a second"}};
+                                 {"drifts from its speeds by", " m in 5 s"},
+                                 {"drifts off its headings by", " m in 5 s"},
+                                 {"turns more than it can, by", " rad in 5 s"},
+                                 {"changes its speed more than it can, by", " m/s in 5 s"}};
       auto const& [does, unit] = words[static_cast<std::size_t>(finding.flaw)];
       if (finding.flaw == Flaw::none) return "moves as vehicles can";
       return std::string(does) + " " + detail::rounded_text(finding.driven) + unit + ", possible are " +
@@ -97,7 +97,7 @@ struct Infeasible {
                           parameter("place", &P::place, "m", Range{0, 10}, "tolerance of positions in a step"),
                           parameter("heading", &P::heading, "rad", Range{0, 1}, "tolerance of headings"),
                           parameter("speed", &P::speed, "m/s", Range{0, 10}, "tolerance of speeds"),
-                          parameter("drift", &P::drift, "m", Range{0, 10}, "tolerance of positions in a second"));
+                          parameter("drift", &P::drift, "m", Range{0, 10}, "tolerance of positions in 5 s"));
   }
 
   template <class World>
@@ -128,6 +128,7 @@ struct Infeasible {
     auto const earlier = std::exchange(drifts, {});  // a step that is impossible by itself starts it anew
     double const dt = now.time - before.time;
     if (!(dt > 0.0)) return {};
+    if (double const sum = now.x + now.y + now.heading + now.speed; !std::isfinite(sum)) return {Flaw::way, sum, 0.0};
     double const turn = geometry::angle_difference(now.heading, before.heading);
     double const mean = 0.5 * (before.speed + now.speed), change = now.speed - before.speed;
     double const a = change / dt, inexact = speed / dt;
@@ -157,21 +158,24 @@ struct Infeasible {
     double const most_used = std::max(grip, portable::hypot(lowest, most_lateral));
     if (used > most_used) return {Flaw::grip, used, most_used};
 
-    double const faded = portable::exp(-dt);
+    double const faded = portable::exp(-dt / fading);
     double const grips = moving > 0.0 ? most_lateral * dt / moving : std::numeric_limits<double>::infinity();
     drifts = {faded * earlier.along + along - chord * way, steers ? faded * earlier.across + across : 0.0,
               faded * earlier.turn + std::max(0.0, std::abs(turn) - std::min(bend * std::abs(way), grips)),
               faded * earlier.speed + std::max({0.0, change - highest * dt, lowest * dt - change})};
-    double const far = drift + most * dt / 8.0, aside = drift + most * dt / 24.0;  // a stop within a step adds to these
+    double const slip = drift * std::min(1.0, 0.05 + std::abs(mean));            // one that stands does not slip
+    double const far = slip + most * dt / 8.0, aside = slip + most * dt / 24.0;  // a stop within a step adds to these
     if (std::abs(drifts.along) > far) return {Flaw::drift, drifts.along, std::copysign(far, drifts.along)};
     if (std::abs(drifts.across) > aside) return {Flaw::side_drift, drifts.across, std::copysign(aside, drifts.across)};
-    double const round = 2.0 * heading + (steers ? bend * far : 0.0);
+    double const round = 2.0 * heading + (bend * std::abs(way) < grips ? bend * far : 0.0);
     if (drifts.turn > round) return {Flaw::turn_drift, drifts.turn, round};
     if (drifts.speed > 2.0 * speed) return {Flaw::speed_drift, drifts.speed, 2.0 * speed};
     return {};
   }
 
  private:
+  static constexpr double fading = 5.0;  ///< time constant [s]
+
   struct Accelerations {
     double lowest, highest;
   };

@@ -16,6 +16,7 @@ enum class StepProblem : std::uint8_t {
   no_execution,  ///< a plan ends before the step does, or its execution failed
   not_finite,    ///< the next state is not finite
   bad_speed,     ///< the next speed is negative, or above 1000 m/s
+  too_far,       ///< the next position is more than 10^9 m from the origin of the map
 };
 
 /// The result of a step. Agents with a problem keep their last valid state and leave traffic; all others have moved.
@@ -36,7 +37,8 @@ struct [[nodiscard("a step that is not valid may not have moved the world: check
                                      "the behaviour found no plan",
                                      "the plan does not reach the end of the step",
                                      "the next state is not a finite number",
-                                     "the next speed is not from 0 to 1000 m/s"};
+                                     "the next speed is not from 0 to 1000 m/s",
+                                     "the next position is more than 1e9 m from the origin of the map"};
   auto const number = static_cast<std::size_t>(problem);
   return number < std::size(clauses) ? clauses[number] : "unknown problem";
 }

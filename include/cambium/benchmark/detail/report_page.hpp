@@ -76,13 +76,14 @@ label { display: inline-flex; align-items: center; gap: 6px; cursor: pointer; }
 #runs td { max-width: 320px; overflow: hidden; text-overflow: ellipsis; }
 #runs .more td { white-space: normal; text-align: left; cursor: auto; font-weight: 400; max-width: none; }
 .violation { display: block; font-size: 12px; overflow: hidden; text-overflow: ellipsis; }
+.decisive { font-weight: 650; }
 [hidden] { display: none !important; }
 )css";
 
 /// The list of runs: body and script. It reads the JSON of the element `data`.
 inline constexpr std::string_view report_list = R"html(<section id="list"><h2>All runs</h2>
 <p class="soft">A click on a row opens its replay, or says how to make it. A click on a head sorts. ❄ is the snapshot of a
-failure, its state before the end: open it with examples/run debug_snapshot.</p>
+failure, its state before the end: open it with examples/run debug_snapshot. Bold: why a run is no success.</p>
 <div class="controls"><input type="search" id="find" placeholder="scenario, behaviour, error ..." aria-label="Find runs">
 <select id="set" aria-label="Set"></select><select id="behavior" aria-label="Behaviour"></select>
 <select id="outcome" aria-label="Outcome"></select>
@@ -128,8 +129,9 @@ const hasReplay = new Set(data.made), hasSnapshot = new Set(data.frozen);
 const quoted = (word) => /^[\w:.\/-]+$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
 const command = (row) => groups[row[0]].command + (groups[row[0]].source ? ' ' + groups[row[0]].source : '') + ' --only ' + quoted(groups[row[0]].title + ':' + row[1] + ':' +
     groups[row[0]].behavior) + ' --replay ' + quoted(data.folder + '/' + file(row, '.html'));
-const violated = (row) => (violations[row.index] || []).map(([frame, text]) => {
-  const item = make(hasReplay.has(row.index) ? 'a' : 'span', text.replaceAll('_', ' '), 'violation');
+const violated = (row) => (violations[row.index] || []).map(([frame, text, decides]) => {
+  const name = 'violation' + (decides ? ' decisive' : '');
+  const item = make(hasReplay.has(row.index) ? 'a' : 'span', text.replaceAll('_', ' '), name);
   if (hasReplay.has(row.index)) item.href = link(row, '.html') + '#frame=' + frame;
   item.onclick = (event) => event.stopPropagation();
   return item;
@@ -163,7 +165,14 @@ const draw = () => {
         mark.style.background = 'var(--o' + value + ')';
         td.append(mark, outcomes[value]);
         if (errors[row.index]) td.title = errors[row.index];
-        td.append(...violated(row).slice(0, 2));
+        const items = violated(row), decides = (item) => item.classList.contains('decisive');
+        td.append(...items.sort((a, b) => decides(b) - decides(a)).slice(0, 2));
+        if (items.length > 2) {
+          const rest = make('a', (items.length - 2) + ' more', 'violation');
+          rest.href = '#list';
+          rest.onclick = (event) => { event.preventDefault(); event.stopPropagation(); explain(line, row); };
+          td.append(rest);
+        }
       } else if (c === 1 && hasReplay.has(row.index)) {
         const anchor = make('a', '▶ ' + value);
         anchor.href = link(row, '.html');

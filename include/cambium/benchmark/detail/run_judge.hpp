@@ -128,16 +128,14 @@ class RunJudge {
     for (auto& own : own_) {
       for (auto& rule : own.rules) rule.monitor(world, own.slot);
       own.in_oncoming_lanes.observe(world, own.slot, dt);
+      own.off_road.see(OffRoad{}(world, own.slot), world.time());
       ask_whether_possible(world, own);
     }
-    off_road_.see(OffRoad{}(world, ego_), world.time());
     discomfort_.see(1.0 - std::get<Score>(metrics_).recorder.parts().comfort, world.time());
     imposed_.see(std::get<Imposed>(metrics_).recorder.value(), world.time());
     straddling_.see(std::get<Straddling>(metrics_).recorder.value(), world.time());
-    result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
+    for (auto const& own : own_) note_collisions(world, own.slot);
     auto const pair = AnyCollision{}.pair(world);
-    for (auto const& own : own_)
-      if (pair || !in_traffic(world, own.slot)) note_collision(world, own.slot);
     bool const others = pair && !is_own(pair->first) && !is_own(pair->second);
     result_.others_collided += others && !others_collide_;
     others_collide_ = others;
@@ -145,15 +143,16 @@ class RunJudge {
 
   [[nodiscard]] RunResult& result() { return result_; }
 
-  /// The result of a run that has ended, in which what `fails` names is no success. After a collision, the least time
-  /// to it and the least clearance are 0.
+  /// The result of a run that has ended, in which what `fails` names is no success. After a collision of the
+  /// ego, also one between two frames, the least times and the least clearance are 0.
   [[nodiscard]] RunResult finished(World const& world, std::span<Criterion const> fails) {
     result_.steps = static_cast<std::int64_t>(world.frame().step);
     result_.duration_s = world.time();
     std::apply([&](auto const&... metric) { (metric.write(result_), ...); }, metrics_);
-    result_.off_road = off_road_.value > 0.0;
+    for (auto const& own : own_) result_.off_road = result_.off_road || own.off_road.value > 0.0;
     result_.discomfort = discomfort_.value > 0.0;
-    if (result_.collision) result_.least_time_to_collision = result_.least_clearance = 0.0;
+    if (touched_) result_.least_time_to_collision = result_.least_clearance = 0.0;
+    if (touched_agent_) result_.post_encroachment_time = 0.0;
     add_violations(std::ranges::find(fails, Criterion::discomfort) != fails.end());
     for (auto const criterion : fails) {
       if (!meets(result_, criterion, bounds_)) continue;
@@ -165,15 +164,6 @@ class RunJudge {
   }
 
  private:
-  /// An agent under test, and what is known of its way so far.
-  struct Own {
-    AgentId id;
-    Slot slot;
-    Infeasible::Drift drift{};
-    std::vector<RunRule> rules = run_rules();
-    Integral<OncomingLane> in_oncoming_lanes{};  ///< [s]
-  };
-
   /// The largest value so far, and when it was reached.
   struct Peak {
     double value = 0.0, time = 0.0;
@@ -182,45 +172,44 @@ class RunJudge {
     }
   };
 
+  /// An agent under test, and what is known of its way so far.
+  struct Own {
+    AgentId id;
+    Slot slot;
+    Infeasible::Drift drift{};
+    std::vector<RunRule> rules = run_rules();
+    Integral<OncomingLane> in_oncoming_lanes{};  ///< [s]
+    Peak off_road{};                             ///< 0 or 1
+  };
+
   void ask_whether_possible(World const& world, Own& own) {
     auto const finding = bounds_.infeasible.finding(world, own.slot, own.drift);
     if (finding.flaw == Infeasible::Flaw::none) return;
-    result_.infeasible = true;
+    if (!std::exchange(result_.infeasible, true)) first_ = {world.time(), own.id, finding};
     ++result_.infeasible_steps;
-    if (finding.excess() <= worst_.finding.excess()) return;
-    worst_ = {world.time(), own.id, finding};
+    if (finding.excess() > worst_.finding.excess()) worst_ = {world.time(), own.id, finding};
   }
 
   [[nodiscard]] bool is_own(AgentId agent) const { return std::ranges::find(own_, agent, &Own::id) != own_.end(); }
 
-  /// Notes what the agent at `slot` touches or touched during the last step, in which it may have left traffic.
-  void note_collision(World const& world, Slot slot) {
-    auto const* const before = world.before_step();
-    auto const is_there = [&](Slot at) {
-      auto const now = world.frame().agents[at].status;
-      return now == AgentStatus::driving || (before != nullptr && drove((*before)[at].status, now));
-    };
-    if (!is_there(slot)) return;
-    auto const own = motion_at(world, slot);
-    for (Slot other{}; index_of(other) < world.size(); ++other) {
-      if (other == slot || !is_there(other)) continue;
-      auto const its = motion_at(world, other);
-      if (!geometry::intersects(own, its)) continue;
+  /// Notes what the agent at `slot` touches or touched during the last step.
+  void note_collisions(World const& world, Slot slot) {
+    for_each_touched(world, slot, [&](Slot other) {
       note_contact(world, slot, world.roster().agents[other].id, relative_speed(world, slot, other));
-      result_.at_fault = result_.at_fault || AtFaultCollision{}.in_last_step(world, slot, other);
-    }
-    if (touched_object(world, own) == nullptr) return;
-    double const speed = speed_in_step(world, slot);
-    note_contact(world, slot, none<AgentId>, speed);
-    result_.at_fault = result_.at_fault || speed > blameless_speed;
+    });
+    if (touched_object_in_step(world, slot) != nullptr)
+      note_contact(world, slot, none<AgentId>, speed_in_step(world, slot));
   }
 
-  /// `other`: none for an object.
+  /// `other`: none for an object. Of several contacts, the hardest is on record.
   void note_contact(World const& world, Slot slot, AgentId other, double speed) {
-    if (std::exchange(result_.collision, true)) return;
+    touched_ = touched_ || slot == ego_;
+    touched_agent_ = touched_agent_ || (slot == ego_ && is_valid(other));
+    result_.at_fault = result_.at_fault || AtFaultCollision{}.in_last_step(world, slot);
+    if (std::exchange(result_.collision, true) && speed <= result_.impact_speed) return;
     result_.impact_speed = speed;
     result_.hit = other;
-    if (slot != ego_) hit_by_ = world.roster().agents[slot].id;
+    hit_by_ = slot == ego_ ? none<AgentId> : world.roster().agents[slot].id;
   }
 
   /// The higher of the relative speeds of two agents before and after the last step [m/s].
@@ -266,11 +255,15 @@ class RunJudge {
       }
     if (is_valid(hit_by_)) items.push_back({result_.duration_s, "collision" + by(hit_by_)});
     if (result_.infeasible) {
-      auto text = "infeasible: agent " + to_string(worst_.agent) + " " + to_string(worst_.finding);
-      if (result_.infeasible_steps > 1) text += ", the worst of " + std::to_string(result_.infeasible_steps) + " steps";
-      items.push_back({worst_.time, std::move(text)});
+      auto text = "infeasible: agent " + to_string(first_.agent) + " " + to_string(first_.finding);
+      if (result_.infeasible_steps > 1) text += ", the first of " + std::to_string(result_.infeasible_steps) + " steps";
+      if (worst_.time > first_.time)
+        text += ", the worst at " + seconds(worst_.time) + ": agent " + to_string(worst_.agent) + " " +
+                to_string(worst_.finding);
+      items.push_back({first_.time, std::move(text)});
     }
-    if (result_.off_road) items.push_back({off_road_.time, "off_road"});
+    for (auto const& own : own_)
+      if (own.off_road.value > 0.0) items.push_back({own.off_road.time, "off_road" + by(own.id)});
     if (with_discomfort && result_.discomfort) items.push_back({discomfort_.time, "discomfort"});
     if (meets(result_, Criterion::imposed_braking, bounds_))
       items.push_back({imposed_.time, "imposed_braking of " + rounded_text(imposed_.value) + " m/s^2"});
@@ -281,7 +274,7 @@ class RunJudge {
       result_.violations += (result_.violations.empty() ? "" : "; ") + seconds(item.time) + " " + item.text;
   }
 
-  struct Worst {
+  struct Impossible {
     double time = 0.0;
     AgentId agent = none<AgentId>;
     Infeasible::Finding finding{};
@@ -298,7 +291,7 @@ class RunJudge {
   /// Of those that are in its lane already; infinite where nobody is ahead.
   struct GapAhead {
     [[nodiscard]] double operator()(World& world, Slot slot) const {
-      auto const next = world.truth(slot).ahead({.merging = Merging::ignored});
+      auto const next = next_in_lane(world, slot);
       return next ? next->gap : std::numeric_limits<double>::infinity();
     }
   };
@@ -358,10 +351,11 @@ class RunJudge {
   CriterionBounds bounds_;
   RunResult result_;
   bool others_collide_ = false;
-  AgentId hit_by_ = none<AgentId>;  ///< a controlled agent that collided, if it was not the ego
-  Peak off_road_{}, discomfort_{};  ///< 0 or 1
-  Peak imposed_{}, straddling_{};   ///< [m/s^2], [s]
-  Worst worst_{};
+  bool touched_ = false, touched_agent_ = false;  ///< by the ego
+  AgentId hit_by_ = none<AgentId>;                ///< who has hit `hit`, if it was not the ego
+  Peak discomfort_{};                             ///< 0 or 1
+  Peak imposed_{}, straddling_{};                 ///< [m/s^2], [s]
+  Impossible first_{}, worst_{};
   Metrics metrics_{};
 };
 

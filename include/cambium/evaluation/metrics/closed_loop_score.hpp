@@ -105,7 +105,7 @@ struct ClosedLoopScore {
   void observe(World& world, Slot slot, double dt) {
     auto const& record = world.frame().agents[slot];
     if (record.status != AgentStatus::driving) return;
-    if (AtFaultCollision{}(world, slot)) parts_.no_fault = 0.0;
+    if (AtFaultCollision{}.in_last_step(world, slot)) parts_.no_fault = 0.0;
     bool const leaves = OffRoad{}(world, slot);
     if (leaves) parts_.on_road = 0.0;
     if (parts_.keeps_distance > 0.0 && is_close(world, slot, leaves)) parts_.keeps_distance = 0.0;

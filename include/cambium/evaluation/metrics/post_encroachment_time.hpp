@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <deque>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/core/portable_math.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/geometry/collision.hpp"
@@ -17,14 +18,24 @@
 namespace cambium {
 
 /// Post-encroachment time [s]: the least time between one of two road users leaving a place and the other one reaching
-/// it, where their ways cross or meet (Allen, Shin, Cooper 1978). Places are those that bodies cover at the steps: the
-/// grid of its times is that of the steps. Vehicles that follow each other in one direction (less than `crossing_angle`
-/// apart) do not count, nor what happened more than `longest` [s] ago. 0 where the two touch; NaN without an encounter.
-/// O(agents * steps in `longest`) per step.
+/// it, where their ways cross or meet (Allen, Shin, Cooper 1978). Places are those that bodies cover at the steps, and
+/// within a step wherever they have moved on by their length: this is the grid of its times. Vehicles that follow each
+/// other in one direction (less than `crossing_angle` apart) do not count, nor what happened more than `longest` [s]
+/// ago. 0 where the two touch; NaN without an encounter. O(agents * places in `longest`) per step.
 class PostEncroachmentTime {
  public:
   double longest = 5.0;         ///< [s]
   double crossing_angle = 0.5;  ///< [rad]
+
+  static constexpr char const* name = "post_encroachment_time";
+  static constexpr char const* summary = "from one road user's leaving a place to another's reaching it [s]";
+  static constexpr char const* source = "Allen, Shin, Cooper 1978";
+  static constexpr auto parameters() {
+    using P = PostEncroachmentTime;
+    return parameter_list(
+        parameter("longest", &P::longest, "s", Range{0, 1000}, "what happened earlier does not count"),
+        parameter("crossing_angle", &P::crossing_angle, "rad", Range{0, 3.2}, "between ways that cross"));
+  }
 
   template <class World>
   void observe(World& world, Slot slot, double) {
@@ -38,16 +49,18 @@ class PostEncroachmentTime {
         ++i;
       }
     bool const is_there = in_traffic(world, slot);
-    auto const own = footprint(world, slot);
-    if (is_there) meet(own, others_);
     for (Slot other{}; index_of(other) < world.size(); ++other) {
       if (other == slot || !in_traffic(world, other)) continue;
-      auto const its = footprint(world, other);
-      meet(its, trail_);
-      if (is_there) meet(its, std::array{own});
-      if (is_there) others_.push_back(its);
+      for_each_place(world, other, [&](Footprint const& its) {
+        meet(its, trail_);
+        if (is_there) others_.push_back(its);
+      });
     }
-    if (is_there) trail_.push_back(own);
+    if (!is_there) return;
+    for_each_place(world, slot, [&](Footprint const& own) {
+      meet(own, others_);
+      trail_.push_back(own);
+    });
   }
 
   [[nodiscard]] double value() const {
@@ -58,23 +71,37 @@ class PostEncroachmentTime {
   struct Footprint {
     double time;
     geometry::OrientedBox box;
-    double heading;
   };
 
-  template <class World>
-  [[nodiscard]] static Footprint footprint(World const& world, Slot slot) {
-    auto const& state = world.frame().agents[slot].state;
-    return {world.time(), box_at(world, slot), state.heading};
+  /// Calls `f(footprint)` for where the agent at `slot` is, and was since the last frame.
+  template <class World, class F>
+  static void for_each_place(World const& world, Slot slot, F const& f) {
+    auto const& record = world.frame().agents[slot];
+    auto const* const before = world.before_step();
+    int parts = 1;
+    double dt = 0.0;
+    if (before != nullptr && (*before)[slot].status == AgentStatus::driving) {
+      auto const& then = (*before)[slot].state;
+      constexpr double most = 100.0;
+      double const way = portable::hypot(record.state.x - then.x, record.state.y - then.y);
+      parts = static_cast<int>(std::ceil(std::clamp(way / world.roster().agents[slot].shape.length(), 1.0, most)));
+      dt = record.state.time - then.time;
+    }
+    auto const motion = motion_at(world, slot);
+    for (int i = 1; i <= parts; ++i) {
+      double const share = static_cast<double>(i) / parts;
+      f(Footprint{world.time() - (1.0 - share) * dt, motion.at(share)});
+    }
   }
 
-  /// Whoever is here now, and whoever was here earlier.
-  template <class Earlier>
-  void meet(Footprint const& now, Earlier const& earlier) {
-    for (auto const& before : earlier) {
-      double const since = now.time - before.time;
-      if (since >= least_ || !geometry::intersects(now.box, before.box)) continue;
-      bool const crosses = portable::cos(now.heading - before.heading) <= portable::cos(crossing_angle);
-      if (crosses || since == 0.0) least_ = since;
+  /// Of two road users, `one` is here, and all of `others` were here, or come in the same step.
+  template <class Places>
+  void meet(Footprint const& one, Places const& others) {
+    for (auto const& other : others) {
+      double const since = std::abs(one.time - other.time);
+      if (since >= least_ || !geometry::intersects(one.box, other.box)) continue;
+      double const along = one.box.cos * other.box.cos + one.box.sin * other.box.sin;
+      if (along <= portable::cos(crossing_angle) || since == 0.0) least_ = since;
     }
   }
 

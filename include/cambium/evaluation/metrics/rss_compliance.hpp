@@ -6,6 +6,7 @@
 #include "cambium/behavior/wrap/rss_conformant.hpp"
 #include "cambium/core/constants.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -19,6 +20,13 @@ struct RssCompliance {
   RssCompliance() = default;
   /// Judges by these assumptions on how vehicles brake and respond.
   explicit RssCompliance(RssParameters const& assumptions) : rss(assumptions) {}
+
+  static constexpr char const* name = "rss_compliance";
+  static constexpr char const* summary = "share of steps in which it braked where RSS demands it";
+  static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("rss", &RssCompliance::rss, "how vehicles brake and respond"));
+  }
 
   template <class World>
   void observe(World& world, Slot slot, double dt) {

@@ -18,9 +18,17 @@ namespace cambium {
 
 namespace detail {
 
+/// Whether a light is yellow or red.
+template <class World>
+[[nodiscard]] bool asks_to_stop(World& world, Slot slot, LightId light) {
+  if (!is_valid(light)) return false;
+  auto const color = world.truth(slot).light(light);
+  return color == map::LightColor::yellow || color == map::LightColor::red;
+}
+
 /// Whether there is anything within `distance` [m] ahead of an agent's front end that may make a driver brake from
-/// `speed` [m/s]: a road user, an object, a signal that is not green, a conflict, the end of its lane or its way, a
-/// lower speed limit, or a bend. O(conflicts + signals + bends there).
+/// `speed` [m/s]: a road user, an object, a sign, a light that is not green, a conflict, the end of its lane or its
+/// way, a lower speed limit, or a bend. O(conflicts + signals + bends there).
 template <class World>
 [[nodiscard]] bool has_reason_to_brake(World& world, Slot slot, double distance, double speed) {
   if (auto const next = world.truth(slot).ahead(); next && next->gap < distance) {
@@ -32,9 +40,7 @@ template <class World>
   double const end = front + distance;
   for (auto const& signal : corridor.signals) {
     bool const is_near = signal.line >= front && signal.line < end;
-    if (is_near &&
-        (signal.kind != map::SignalKind::light || world.truth(slot).light(signal.light) != map::LightColor::green))
-      return true;
+    if (is_near && (signal.kind != map::SignalKind::light || asks_to_stop(world, slot, signal.light))) return true;
   }
   for (auto const& conflict : corridor.conflicts)
     if (conflict.hull().end > s && conflict.hull().begin < end) return true;
@@ -48,7 +54,7 @@ template <class World>
 
 /// How hard others had to brake because of an agent, beyond what the rules ask of them: the hardest braking [m/s^2] of
 /// another road user
-/// - that has the right of way over the agent, in a conflict in which the agent is;
+/// - that has the right of way over the agent, in a conflict in which the agent is, and brakes for nobody else;
 /// - right behind the agent, which has changed into its lane in the last `memory` [s];
 /// - right behind the agent, which in the last `reaction` [s] braked harder than `hard` for nothing.
 /// 0 if none braked harder than `comfortable`. O(agents + conflicts near) per step.
@@ -100,7 +106,11 @@ struct ImposedBraking {
       auto const& [conflict, zone, at] = mutual;
       if (conflict.right_of_way != map::RightOfWay::yields || at >= zone.other_end || zone.other_begin - at > way)
         return false;
-      return !is_valid(conflict.other_light) || world.truth(slot).light(conflict.other_light) != map::LightColor::red;
+      double const front = at + world.roster().agents[other].shape.front;
+      auto const leader = world.truth(other).ahead();
+      if (leader && !(is_valid(leader->agent) && leader->slot == slot) && leader->gap < zone.other_begin - front)
+        return false;
+      return front > zone.other_line || !detail::asks_to_stop(world, slot, conflict.other_light);
     });
   }
 

@@ -67,6 +67,7 @@ class WorldStep {
   }
 
   static constexpr double rounding = 1e-6;  ///< tolerance below zero speed [m/s]
+  static constexpr double farthest = 1e9;   ///< position that a state may have [m]
 
   /// Plans and executes: fills the agent's next record except for its place on the road, which `place_all` finds.
   void advance(Slot slot, Record& next) {
@@ -89,6 +90,8 @@ class WorldStep {
       return fail(StepProblem::not_finite, agent.id, next);
     if (!(executed.state.speed >= -rounding && executed.state.speed <= fastest)) [[unlikely]]
       return fail(StepProblem::bad_speed, agent.id, next);
+    if (!(std::abs(executed.state.x) <= farthest && std::abs(executed.state.y) <= farthest)) [[unlikely]]
+      return fail(StepProblem::too_far, agent.id, next);
     if constexpr (past_steps_of < Observer >> 0) next.past.push(now.state, static_cast<double>(now.acceleration));
     next.status = AgentStatus::driving;
     next.state = executed.state;
