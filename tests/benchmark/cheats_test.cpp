@@ -2,6 +2,8 @@
 #include <cambium/benchmark/contender.hpp>
 #include <cambium/cambium.hpp>
 #include <cambium/evaluation/rules.hpp>
+#include <cambium/map/building/map_builder.hpp>
+#include <cambium/map/opendrive.hpp>
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -16,6 +18,7 @@
 #include <vector>
 
 #include "../support/maps.hpp"
+#include "../support/who_yields.hpp"
 #include "cheats/cheat.hpp"
 
 using namespace cambium;
@@ -324,6 +327,139 @@ TEST_CASE("a red light makes a run no success, unless its set chooses otherwise"
   CHECK(judged(Kind::bullet, scenario, {.fails = {}}).success);
   scenario.lights = {{.cycle = 100, .green_begin = 0, .green_end = 50}};
   CHECK(judged(Kind::bullet, scenario).success);
+}
+
+namespace {
+
+/// The criteria that a run meets, in their order.
+std::string met_by(RunResult const& result) {
+  std::string names;
+  for (int i = 0; i <= static_cast<int>(Criterion::discomfort); ++i) {
+    auto const criterion = static_cast<Criterion>(i);
+    if (detail::meets(result, criterion, {})) names.append(names.empty() ? "" : " ").append(to_string(criterion));
+  }
+  return names;
+}
+
+/// Two lanes with a mark between them that nobody may cross.
+std::shared_ptr<Map const> road_with_solid_line() {
+  return parse_opendrive(
+             "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
+             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane id='0'/></center>"
+             "<right><lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/><roadMark sOffset='0' "
+             "type='solid' laneChange='none' weight='standard' color='standard' width='0.12'/></lane><lane id='-2' "
+             "type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection></lanes>"
+             "</road></OpenDRIVE>")
+      .map;
+}
+
+}  // namespace
+
+TEST_CASE("each broken rule is on record as itself, and fails a run where its set chooses so") {
+  auto const check = [](Scenario<Traffic> const& scenario, Criterion criterion, std::string const& words) {
+    auto const result = judged(Kind::bullet, scenario, {.time_limit = 30});
+    INFO(to_string(result));
+    CHECK(met_by(result) == to_string(criterion));
+    CHECK(says(result, words));
+    auto const strict = judged(Kind::bullet, scenario, {.time_limit = 30, .fails = {criterion}});
+    CHECK(strict.failed_by == to_string(criterion));
+    CHECK_FALSE(strict.success);
+  };
+  check(scene(20, {}, support::road_with_signal("206")), Criterion::stop_sign, "s stop_sign");
+
+  auto crosses = scene(20, {}, road_with_solid_line());
+  crosses.agents.front().heading = -0.02;
+  crosses.agents.front().goal = NoGoal{};
+  crosses.agents.front().position = {300, -1.75};
+  check(crosses, Criterion::solid_line, "s solid_line");
+
+  auto leaves = scene(20);
+  leaves.agents.front().heading = 0.02;
+  leaves.agents.front().position = {400, -1.75};
+  leaves.agents.front().goal = NoGoal{};
+  check(leaves, Criterion::off_road, "s off_road");
+  auto other_leaves = scene(20, {{30, -5.25, 20}});
+  other_leaves.agents[1].heading = -0.02;
+  other_leaves.controlled = {AgentId{1}};
+  check(other_leaves, Criterion::off_road, "s off_road by agent 1");
+
+  support::WhoYields const at;
+  Scenario<Traffic> takes{.map = at.map, .ego = AgentId{0}};
+  auto const add = [&](std::pair<LaneId, double> const& place, map::Route const& route, double speed) {
+    auto const pose = at.map->lane(place.first).path.pose(place.second);
+    takes.agents.push_back({.position = pose.position(),
+                            .heading = pose.heading,
+                            .speed = speed,
+                            .behavior = ConstantAcceleration{},
+                            .route = route,
+                            .id = static_cast<AgentId>(takes.agents.size())});
+  };
+  add(at.own_place(20.0), at.own, 5.0);
+  add(at.other_place(26.0), at.other, 5.5);
+  auto const along = contender<Traffic>(ConstantAcceleration{});
+  auto const taken = along.run(takes, {.fails = {Criterion::right_of_way}}, false).result;
+  INFO(to_string(taken));
+  CHECK(met_by(taken) == "right_of_way");
+  CHECK(taken.failed_by == "right_of_way");
+  CHECK(says(taken, "s right_of_way to agent 1"));
+}
+
+TEST_CASE("bounds of a set, the way off the route and collisions of others are on record") {
+  auto const rough = judged(Kind::blinker, scene(20), {.bounds = {.infeasible = {.grip = 5.0}}});
+  CHECK(rough.failed_by == "infeasible");
+  CHECK(says(rough, "possible are -5"));
+  auto lost = scene(20);
+  lost.agents.front().heading = 0.1;
+  auto const away = judged(Kind::bullet, lost);  // beside the lane that it should reach
+  INFO(to_string(away));
+  CHECK(away.off_road);
+  CHECK(away.off_route);
+  CHECK_FALSE(away.success);
+  auto const pile = judged(Kind::honest, scene(20, {{60, -5.25, 30}, {70, -5.25, 30}, {110, -5.25, 10}}));
+  CHECK(pile.success);
+  CHECK(pile.others_collided == 1);
+}
+
+TEST_CASE("an impact is as hard as the two velocities differ, and who passes in one lane is beside") {
+  auto crossed = scene(20, {});
+  crossed.agents.push_back(
+      {.position = {90, -46.75}, .speed = 15, .behavior = ConstantAcceleration{}, .id = AgentId{1}});
+  crossed.agents[1].heading = 1.5707963267948966;
+  crossed.agents[1].way = {{90, -60}, {90, 30}};
+  auto const hit = judged(Kind::bullet, crossed, {.time_step = 0.05});
+  INFO(to_string(hit));
+  CHECK(hit.collision);
+  CHECK(hit.impact_speed == doctest::Approx(25.0));
+  CHECK(hit.post_encroachment_time == 0.0);
+
+  auto const wide = support::map_of(
+      {.id = "1", .line = map::lay_from({}, {{500}}), .sections = {{.right = map::equal_lanes(1, 6.0)}}});
+  auto passes = scene(10, {{60, -4.6, 5}, {250, -4.6, 5}}, wide);
+  passes.agents.front().position = {30, -1.4};
+  auto const passed = judged(Kind::bullet, passes, {.time_limit = 12});
+  CHECK_FALSE(passed.collision);
+  CHECK(passed.least_gap > 0.0);
+  CHECK(passed.time_headway > 0.0);
+  CHECK(passed.least_clearance < 1.5);
+}
+
+TEST_CASE("whoever runs over a pedestrian is at fault, however long the steps are") {
+  for (double const step : {0.2, 0.5, 1.0})
+    for (double const speed : {20.0, 40.0})
+      for (int i = 0; i < 12; ++i) {
+        double const x = 150.0 + 0.65 * i;
+        auto walks = scene(speed, {{x, -1.95 - 0.5 * (x - 34.0) / speed, 0.5}});
+        auto& pedestrian = walks.agents[1];
+        pedestrian.heading = 1.5707963267948966;
+        pedestrian.way = {{x, -30}, {x, 30}};
+        pedestrian.shape = {.front = 0.25, .rear = 0.25, .left = 0.25, .right = 0.25};
+        auto const result = judged(Kind::bullet, walks, {.time_step = step});
+        CAPTURE(step);
+        CAPTURE(speed);
+        CAPTURE(i);
+        CHECK(result.collision);
+        CHECK(result.at_fault);
+      }
 }
 
 TEST_CASE("what others had to brake because of the ego is on record, and a criterion for sets that choose it") {

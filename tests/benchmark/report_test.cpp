@@ -248,11 +248,13 @@ TEST_CASE("verdicts that another judge changed are found with their reasons, als
   auto const tables = tables_of(report);
   CHECK(tables.back().note.find("Success lost in scenarios 3 (collision, at fault), 4 (red_light at 3.4 s), 5") !=
         std::string::npos);
+  CHECK(tables[2].note.find("frenet failed by red_light 27, wrong_way 27.") != std::string::npos);
   auto const outcomes = text_of(tables[2]);
   CHECK(outcomes.find("merging: violations") != outcomes.npos);
   CHECK(outcomes.find("red light [%]") != outcomes.npos);
   auto const summary = text_of(summary_of({judged}).front());
   CHECK(summary.find("red light") != summary.npos);
+  CHECK(summary.find("frenet failed by red_light 27, wrong_way 27.") != summary.npos);
   CHECK(summary.find("solid line") == summary.npos);  // there was none
   auto moved = judged;
   for (auto& row : moved.rows) row.seed += 1;
@@ -313,7 +315,9 @@ TEST_CASE("the page lists all runs, filters them, and links the replays and snap
                                result.error = i == 2 ? "<b>no plan" : "";
                                result.steps = 50;
                                result.duration_s = 10.0;
-                               if (i == 4) result.violations = "3.4 s red_light; 5 s wrong_way until 7.2 s";
+                               if (i != 4) return;
+                               result.violations = "1 s speeding; 3.4 s red_light; 5 s wrong_way until 7.2 s";
+                               result.failed_by = "red_light wrong_way";
                              })});
   TemporaryFolder const folder;
   std::filesystem::create_directories(folder.path() / "replays");
@@ -343,7 +347,11 @@ target.oninput();
 say('text', rows().length);
 target.value = 'red light';
 target.oninput();
-say('violations', rows().length, ...[...rows()[0].querySelectorAll('.violation')].map((a) => a.textContent));
+const texts = (where) => [...where.querySelectorAll('.violation')].map((a) => a.textContent);
+say('violations', rows().length, ...texts(rows()[0]));
+say('decisive', rows()[0].querySelectorAll('.decisive').length);
+rows()[0].querySelector('.violation:last-child').click();
+say('all', ...texts(document.querySelector('.more')));
 )js"));
   auto const document = browser::document(*chromium, file);
   auto const said = [&](std::string const& name) { return browser::attribute(document, "<body", "data-" + name); };
@@ -351,14 +359,16 @@ say('violations', rows().length, ...[...rows()[0].querySelectorAll('.violation')
   CHECK(said("shown") == "100 160");
   CHECK(said("links") ==
         "replays/merging_idm_00000001_4.html replays/merging_idm_00000001_4.snapshot "
-        "replays/merging_idm_00000001_4.html#frame=17 replays/merging_idm_00000001_4.html#frame=25");
+        "replays/merging_idm_00000001_4.html#frame=17 replays/merging_idm_00000001_4.html#frame=25 #list");
   CHECK(said("idm") == "10");
   CHECK(said("sorted") == "success error 2");
   CHECK(said("command").find("examples/run benchmark --set 'my sets/merging.json' --only merging:2:idm --replay ") ==
         0);
   CHECK(said("problem") == "true true");
   CHECK(said("text") == "1");
-  CHECK(said("violations") == "1 3.4 s red light 5 s wrong way until 7.2 s");
+  CHECK(said("violations") == "1 3.4 s red light 5 s wrong way until 7.2 s 1 more");  // what failed it comes first
+  CHECK(said("decisive") == "2");
+  CHECK(said("all") == "1 s speeding 3.4 s red light 5 s wrong way until 7.2 s");
 }
 
 TEST_CASE("the program reports, merges, and exits 1 on a significant loss") {

@@ -11,12 +11,12 @@
 using namespace cambium;
 
 TEST_CASE("evaluators, metrics and labels have the documented defaults, units and ranges") {
-  CHECK(support::parameter_rows<Collision, AtFaultCollision, SpeedDeviation, LaneChangeUrgency, HardBraking,
-                                OthersBraking, Gap, Closeness, TimeToCollision, RequiredDeceleration, Clearance,
-                                Weighted<Progress>, ClosedLoopScore, Constant, SafeDistance, Exceeds<Acceleration>,
-                                DenseTraffic, AtLaneEnd, RightmostLane, LeftmostLane, BeyondPoint, AgentNear,
-                                RelativeSpeed, ZipPartner, SignalAhead, MustGiveWay, PassesSignal, Infeasible,
-                                TimeHeadway, BrakeThreatNumber, Exposure, ImposedBraking>() == &R"(
+  CHECK(support::parameter_rows<
+            Collision, AtFaultCollision, SpeedDeviation, LaneChangeUrgency, HardBraking, OthersBraking, Gap, Closeness,
+            TimeToCollision, RequiredDeceleration, Clearance, Weighted<Progress>, ClosedLoopScore, Constant,
+            SafeDistance, Exceeds<Acceleration>, DenseTraffic, AtLaneEnd, RightmostLane, LeftmostLane, BeyondPoint,
+            AgentNear, RelativeSpeed, ZipPartner, SignalAhead, MustGiveWay, PassesSignal, Infeasible, TimeHeadway,
+            BrakeThreatNumber, Exposure, ImposedBraking, PostEncroachmentTime, RssCompliance>() == &R"(
 collision | margin | 0 | m | [0, 100]
 at_fault_collision | blameless_speed | 0.05 | m/s | [0, 10]
 at_fault_collision | look_ahead | 0 | s | [0, 60]
@@ -97,10 +97,17 @@ imposed_braking | memory | 5 | s | [0, 1000]
 imposed_braking | reaction | 2 | s | [0, 1000]
 imposed_braking | horizon | 4 | s | [0, 100]
 imposed_braking | headway | 3 | s | [0, 100]
+post_encroachment_time | longest | 5 | s | [0, 1000]
+post_encroachment_time | crossing_angle | 0.5 | rad | [0, 3.2]
+rss_compliance | rss.response_time | 1 | s | [0, 10]
+rss_compliance | rss.maximum_acceleration | 3.5 | m/s^2 | [0, 50]
+rss_compliance | rss.maximum_deceleration | 8 | m/s^2 | [0.01, 50]
+rss_compliance | rss.minimum_deceleration | 4 | m/s^2 | [0.01, 50]
+rss_compliance | rss.correct_deceleration | 3 | m/s^2 | [0.01, 50]
+rss_compliance | rss.lateral_acceleration | 0.2 | m/s^2 | [0, 50]
+rss_compliance | rss.lateral_deceleration | 0.8 | m/s^2 | [0.01, 50]
+rss_compliance | rss.lateral_margin | 0.1 | m | [0, 10]
 )"[1]);
-  PostEncroachmentTime const encroachment;
-  CHECK(encroachment.longest == 5.0);
-  CHECK(encroachment.crossing_angle == 0.5);
 }
 
 TEST_CASE("the rule sets have these formulas, and these numbers where they differ from the labels' own") {

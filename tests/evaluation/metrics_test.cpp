@@ -330,6 +330,22 @@ TEST_CASE(
   CHECK(crossing(0.0, 2.6).no_fault == 0.0);
   CHECK(crossing(3.0, 4.0).keeps_distance == 1.0);  // the other one passes behind
 
+  // One that comes over from beside counts for an ego that is not within its lane.
+  for (bool const straddles : {false, true}) {
+    Sim world(support::straight_road(3, 500));
+    world.add({.position = {100, straddles ? -4.25 : -5.25},
+               .speed = 10,
+               .behavior = ConstantAcceleration{},
+               .id = AgentId{2}});
+    world.add({.position = {101.5, -1.75},
+               .heading = -0.2,
+               .speed = 10.2,
+               .behavior = ConstantAcceleration{},
+               .id = AgentId{1}});
+    CHECK(TimeToCollision{}(world, world.slot_of(AgentId{2})) < 0.95);
+    CHECK(observed(world, AgentId{2}, ClosedLoopScore{}, 0).parts().keeps_distance == (straddles ? 0.0 : 1.0));
+  }
+
   // A neighbour drifts into the ego's side, in its lane or over its border.
   for (bool const straddles : {false, true}) {
     Sim world(support::straight_road(3, 500));

@@ -220,6 +220,25 @@ TEST_CASE("a vehicle is off the road across its border, not from lane to lane no
   }
 }
 
+TEST_CASE("a long vehicle straddles the border of a tight bend, a short one does not") {
+  struct Case {
+    double radius;
+    cb::geometry::Shape shape;
+    bool straddles;
+  };
+  for (auto const& [radius, shape, straddles] :
+       {Case{15, cb::geometry::truck(), true}, Case{25, cb::geometry::truck(), true},
+        Case{100, cb::geometry::truck(), false}, Case{15, cb::geometry::car(), false}})
+    for (double const turn : {1.0, -1.0}) {  // to the left, to the right
+      CAPTURE(radius);
+      CAPTURE(turn);
+      Sim world(straight_road(2, 60, turn / radius));
+      auto const pose = world.map().lanes().front().path.pose(30.0);
+      auto const id = world.add({.position = pose.position(), .heading = pose.heading, .shape = shape});
+      CHECK(cb::Straddles{}(world, world.slot_of(id)) == straddles);
+    }
+}
+
 TEST_CASE("agents that have left traffic are not off the road") {
   Sim world(straight_road(1, 100));
   auto const id = world.add({.position = {98, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});

@@ -17,6 +17,7 @@
 #include "../support/error_of.hpp"
 #include "../support/maps.hpp"
 #include "../support/scale.hpp"
+#include "../support/who_yields.hpp"
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
@@ -34,6 +35,7 @@
 #include "cambium/world/world.hpp"
 
 using namespace cambium;
+using support::WhoYields;
 
 namespace {
 
@@ -517,60 +519,22 @@ TEST_CASE("a lane change breaks the rule where the road marks forbid it") {
 
 namespace {
 
-/// A junction's way of an agent that yields to another one, and that one's way.
-struct WhoYields {
-  std::shared_ptr<Map const> map;
-  map::Route own, other;
-  map::ConflictZone zone;
-  LightId light = none<LightId>;  ///< of the other one
-
-  explicit WhoYields(std::string const& file = "intersection_3way.xodr") : map(support::own_map(file)) {
-    for (auto const& lane : map->lanes()) {
-      if (!lane.drivable() || !lane.predecessors.empty()) continue;
-      for (auto const inside : lane.successors) {
-        Sim world(map);
-        own = through(inside);
-        add_on(world, own.lanes.front(), 5, 5, ConstantAcceleration{}, own);
-        for (auto const& conflict : detail::corridor_of(world, Slot{0}).conflicts)
-          if (conflict.right_of_way == map::RightOfWay::yields && !conflict.zones[0][0].empty() &&
-              conflict.kind == map::OverlapKind::crossing && !map->lane(conflict.other).predecessors.empty()) {
-            zone = conflict.zones[0][0];
-            light = conflict.other_light;
-            other = through(conflict.other);
-            return;
-          }
-      }
-    }
-    FAIL("nobody yields");
-  }
-
-  [[nodiscard]] map::Route through(LaneId inside) const {
-    auto const& lane = map->lane(inside);
-    return {{lane.predecessors.front(), inside, lane.successors.front()}, 0.0};
-  }
-
-  /// Both approach: the agent `way` before the zone, the other one `other_way`.
-  [[nodiscard]] Sim world(double way, double other_way, double speed, double other_speed,
-                          AnyDriver const& behavior) const {
-    Sim made(map);
-    auto const place = [&](map::Route const& route, double s) {
-      auto const before = map->lane(route.lanes.front()).length();
-      return s < before ? std::pair(route.lanes[0], s) : std::pair(route.lanes[1], s - before);
-    };
-    auto const at = place(own, zone.begin - way);
-    add_on(made, at.first, at.second, speed, behavior, own);
-    auto const there = place(other, map->lane(other.lanes.front()).length() + zone.other_begin - other_way);
-    add_on(made, there.first, there.second, other_speed, ConstantAcceleration{}, other);
-    return made;
-  }
-};
+/// Both approach: the agent that yields `way` before the zone, the other one `other_way`.
+Sim approach(WhoYields const& at, double way, double other_way, double speed, double other_speed,
+             AnyDriver const& behavior) {
+  Sim world(at.map);
+  auto const own = at.own_place(way), other = at.other_place(other_way);
+  add_on(world, own.first, own.second, speed, behavior, at.own);
+  add_on(world, other.first, other.second, other_speed, ConstantAcceleration{}, at.other);
+  return world;
+}
 
 }  // namespace
 
 TEST_CASE("an agent must give way to a vehicle that has the right of way and is about to arrive") {
   WhoYields const at;
   auto const must = [&](double way, double other_way, double other_speed, double acceleration = 0.0) {
-    auto world = at.world(way, other_way, 5, other_speed, ConstantAcceleration{});
+    auto world = approach(at, way, other_way, 5, other_speed, ConstantAcceleration{});
     world.set_behavior(world.roster().agents[1].id, ConstantAcceleration{.acceleration = acceleration});
     if (acceleration != 0.0) REQUIRE(world.step(0.01));
     CHECK_FALSE(MustGiveWay{}(world, Slot{1}, Slot{0}));
@@ -586,7 +550,7 @@ TEST_CASE("an agent must give way to a vehicle that has the right of way and is 
   CHECK(must(5, 2, 6, -2));
   CHECK(must(5, 5, 6, -8));  // is forced to brake
   auto const in = [&](double way, double other_way) {
-    auto world = at.world(way, other_way, 5, 6, ConstantAcceleration{});
+    auto world = approach(at, way, other_way, 5, 6, ConstantAcceleration{});
     return InConflict{}(world, Slot{0}, Slot{1});
   };
   CHECK(in(-0.5, 10));
@@ -599,12 +563,11 @@ TEST_CASE("whoever takes the right of way of another imposes that one's braking,
   WhoYields const at;
   auto const imposes = [&](WhoYields const& there, double way, double other_way, map::LightPlan const& plan = {},
                            double leader_way = 0.0) {
-    auto world = there.world(way, other_way, 3, 10, ConstantAcceleration{});
+    auto world = approach(there, way, other_way, 3, 10, ConstantAcceleration{});
     if (is_valid(there.light)) world.set_light(there.light, plan);
     if (leader_way > 0.0) {
-      auto const lane = there.other.lanes.front();
-      add_on(world, lane, world.map().lane(lane).length() + there.zone.other_begin - leader_way, 10,
-             ConstantAcceleration{}, there.other);
+      auto const leader = there.other_place(leader_way);
+      add_on(world, leader.first, leader.second, 10, ConstantAcceleration{}, there.other);
     }
     world.set_behavior(world.roster().agents[1].id, ConstantAcceleration{.acceleration = -5.0});
     ImposedBraking metric;
@@ -1115,7 +1078,7 @@ TEST_CASE("drivers who do not stop or do not give way break the rules of interse
   WhoYields const at;
   for (bool const knows : {false, true}) {
     auto const driver = knows ? AnyDriver(Intersection{}) : AnyDriver(ConstantAcceleration{});
-    auto world = at.world(20, 22, 5, 5.5, driver);
+    auto world = approach(at, 20, 22, 5, 5.5, driver);
     auto const found = violations_of(world, world.roster().agents[0].id, rule(rules, "give_way"), 15);
     CHECK(world.record(world.roster().agents[0].id).lane.s > at.zone.begin);
     REQUIRE(found.size() == (knows ? 0 : 1));

@@ -158,7 +158,7 @@ namespace {
 
 /// Plans badly, in the way asked for.
 struct Broken {
-  enum class How { no_plan, too_short, not_a_number, fine, backwards, too_fast } how = How::fine;
+  enum class How { no_plan, too_short, not_a_number, fine, backwards, too_fast, too_far } how = How::fine;
 
   template <class View>
   [[nodiscard]] cb::Plan<View> plan(View const& view, cb::NoMemory&, double dt) const {
@@ -168,6 +168,7 @@ struct Broken {
     if (how == How::not_a_number) next.x = undefined;
     if (how == How::backwards) next.speed = -5.0;
     if (how == How::too_fast) next.speed = 1e9;
+    if (how == How::too_far) next.y = -1e160;
     plan.trajectory.push_back(view.state());
     plan.trajectory.push_back(next);
     if (how == How::no_plan) plan.status = cb::PlanStatus::failed;
@@ -179,11 +180,10 @@ struct Broken {
 
 TEST_CASE("an agent that plans badly is named and keeps its last state; the others move on") {
   using Fragile = cb::World<cb::BehaviorSet<cb::IdmClassic, Broken>, cb::InterpolateExecution, cb::SingleTrack>;
-  std::pair<Broken::How, cb::StepProblem> const cases[] = {{Broken::How::no_plan, cb::StepProblem::no_plan},
-                                                           {Broken::How::too_short, cb::StepProblem::no_execution},
-                                                           {Broken::How::not_a_number, cb::StepProblem::not_finite},
-                                                           {Broken::How::backwards, cb::StepProblem::bad_speed},
-                                                           {Broken::How::too_fast, cb::StepProblem::bad_speed}};
+  std::pair<Broken::How, cb::StepProblem> const cases[] = {
+      {Broken::How::no_plan, cb::StepProblem::no_plan},         {Broken::How::too_short, cb::StepProblem::no_execution},
+      {Broken::How::not_a_number, cb::StepProblem::not_finite}, {Broken::How::backwards, cb::StepProblem::bad_speed},
+      {Broken::How::too_fast, cb::StepProblem::bad_speed},      {Broken::How::too_far, cb::StepProblem::too_far}};
   for (auto const& [how, problem] : cases) {
     Fragile world(straight_road());
     auto const good = world.add({.position = {10, -1.75}, .speed = 10});

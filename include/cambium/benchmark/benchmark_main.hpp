@@ -179,7 +179,8 @@ template <class World>
   return sets;
 }
 
-/// While it lives, Ctrl-C says that the same command goes on, and ends the program.
+/// While it lives, Ctrl-C says that the same command goes on, and ends the program. A planner that calls `exit` ends it
+/// with a word, too, and with status 1.
 class SaysHowToGoOn {
  public:
   SaysHowToGoOn();

@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <iostream>
@@ -177,7 +178,8 @@ inline void check_command(BenchmarkCommand const& command) {
 CAMBIUM_COLD std::optional<BenchmarkCommand> parse_benchmark_command(int argc, char const* const* argv,
                                                                      BenchmarkDefaults const& defaults) {
   BenchmarkCommand command{.database = defaults.out / "results.db"};
-  CLI::App app("Runs behaviours on sets of scenarios.", "benchmark");
+  CLI::App app("Runs behaviours on sets of scenarios.",
+               argc > 0 ? std::filesystem::path(argv[0]).filename().string() : "benchmark");
   add_benchmark_options(app, command);
   try {
     app.parse(argc, argv);
@@ -333,10 +335,32 @@ extern "C" inline void say_how_to_go_on(int signal) {
   std::raise(signal);
 }
 
+/// The process whose runs go on; -1: none. (Processes for single runs have numbers of their own.)
+inline long running_process = -1;
+
+[[nodiscard]] inline long this_process() {
+#if defined(__unix__) || defined(__APPLE__)
+  return getpid();
+#else
+  return 0;
+#endif
+}
+
+extern "C" inline void refuse_exit() {
+  if (running_process != this_process()) return;
+  std::fputs("a planner has ended the program: with --processes, this costs its own run only\n", stderr);
+  std::_Exit(EXIT_FAILURE);
+}
+
 CAMBIUM_COLD SaysHowToGoOn::SaysHowToGoOn() : before_(std::signal(SIGINT, &say_how_to_go_on)) {
   if (before_ == SIG_IGN) std::signal(SIGINT, SIG_IGN);
+  [[maybe_unused]] static int const registered = std::atexit(&refuse_exit);
+  running_process = this_process();
 }
-CAMBIUM_COLD SaysHowToGoOn::~SaysHowToGoOn() { std::signal(SIGINT, before_); }
+CAMBIUM_COLD SaysHowToGoOn::~SaysHowToGoOn() {
+  running_process = -1;
+  std::signal(SIGINT, before_);
+}
 
 CAMBIUM_COLD void write_replay(std::filesystem::path const& replay, Run run) {
   if (!run.recording)

@@ -59,7 +59,18 @@ struct ReachPolygon {
   }
 };
 
-/// Reached when the reference point is in `lane`, between `from` and `to` [m] along its path.
+namespace detail {
+
+/// Whether the reference point is between the borders of its lane; true without a road. O(log n).
+[[nodiscard]] inline bool is_in_lane(GoalSituation const& at) {
+  if (at.road == nullptr) return true;
+  auto const sides = at.road->corridors[at.corridor].widths_at(at.s);
+  return at.lateral <= sides.left && -at.lateral <= sides.right;
+}
+
+}  // namespace detail
+
+/// Reached when the reference point is in `lane`, between its borders, and between `from` and `to` [m] along its path.
 struct ReachLane {
   LaneId lane = none<LaneId>;
   double from = 0.0;
@@ -76,7 +87,7 @@ struct ReachLane {
   void check(std::string const& where) const { detail::check_stretch(from, to, where); }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
-    return at.lane == lane && at.lane_position >= from && at.lane_position <= to;
+    return at.lane == lane && at.lane_position >= from && at.lane_position <= to && detail::is_in_lane(at);
   }
 };
 
