@@ -415,6 +415,8 @@ TEST_CASE("bounds of a set, the way off the route and collisions of others are o
   CHECK(away.off_road);
   CHECK(away.off_route);
   CHECK_FALSE(away.success);
+  lost.agents.front().goal = LaneLimits{.from = 400.0};
+  CHECK(judged(Kind::bullet, lost).off_route);
   auto const pile = judged(Kind::honest, scene(20, {{60, -5.25, 30}, {70, -5.25, 30}, {110, -5.25, 10}}));
   CHECK(pile.success);
   CHECK(pile.others_collided == 1);
@@ -431,6 +433,10 @@ TEST_CASE("an impact is as hard as the two velocities differ, and who passes in 
   CHECK(hit.collision);
   CHECK(hit.impact_speed == doctest::Approx(25.0));
   CHECK(hit.post_encroachment_time == 0.0);
+
+  auto const row = judged(Kind::bullet, scene(20, {{36, -1.75, 15}, {44, -1.75, 0}}), {.time_step = 1.0});
+  CHECK(row.impact_speed == doctest::Approx(20.0));  // of two in a step, the harder one
+  CHECK(row.hit == AgentId{2});
 
   auto const wide = support::map_of(
       {.id = "1", .line = map::lay_from({}, {{500}}), .sections = {{.right = map::equal_lanes(1, 6.0)}}});

@@ -640,7 +640,7 @@ TEST_CASE("whoever brakes hard for nothing imposes the braking of who follows at
 }
 
 TEST_CASE("who has cut in imposes the braking of who follows, for some seconds") {
-  auto const imposes = [](double later) {
+  auto const imposes = [](double later, double own_braking = 0.0) {
     Sim world(support::straight_road(2, 500));
     auto const ego = add(world, 100, middle, 10, StraightOn{});
     auto state = world.state(ego);
@@ -657,7 +657,10 @@ TEST_CASE("who has cut in imposes the braking of who follows, for some seconds")
         changed = world.time();
         world.set_state(ego, {.time = world.time(), .x = world.state(ego).x, .y = left, .speed = 10});
       }
-      if (world.time() > changed + later - 2 * dt) world.set_behavior(follower, ConstantAcceleration{-3.0});
+      if (world.time() > changed + later - 2 * dt) {
+        world.set_behavior(follower, ConstantAcceleration{-3.0});
+        world.set_behavior(ego, ConstantAcceleration{-own_braking});
+      }
     }
     REQUIRE(changed < 1e9);
     return metric.value();
@@ -665,6 +668,8 @@ TEST_CASE("who has cut in imposes the braking of who follows, for some seconds")
   CHECK(imposes(1.0) == doctest::Approx(3.0));
   CHECK(imposes(4.6) == doctest::Approx(3.0));
   CHECK(imposes(5.8) == 0.0);
+  CHECK(imposes(1.0, 2.0) == doctest::Approx(3.0));
+  CHECK(imposes(1.0, 3.5) == 0.0);  // both brake for what is ahead
 }
 
 TEST_CASE("the zip partner is a vehicle beside, between an agent and its leader, where their lanes merge") {

@@ -181,12 +181,12 @@ template <class World>
 
 /// While it lives, Ctrl-C says that the same command goes on, and ends the program. A planner that calls `exit` ends it
 /// with a word, too, and with status 1.
-class SaysHowToGoOn {
+class SaysWhyItEnds {
  public:
-  SaysHowToGoOn();
-  ~SaysHowToGoOn();
-  SaysHowToGoOn(SaysHowToGoOn const&) = delete;
-  SaysHowToGoOn& operator=(SaysHowToGoOn const&) = delete;
+  SaysWhyItEnds();
+  ~SaysWhyItEnds();
+  SaysWhyItEnds(SaysWhyItEnds const&) = delete;
+  SaysWhyItEnds& operator=(SaysWhyItEnds const&) = delete;
 
  private:
   void (*before_)(int);
@@ -214,6 +214,7 @@ void run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender
     fail("there is no such scenario", "give a number from 0 to " + std::to_string(set->scenarios.size() - 1));
   if (command.replay && !command.replay->ends_with(".html"))
     throw Error("--replay", "is '" + *command.replay + "'", "give a name that ends in .html");
+  SaysWhyItEnds const at_end;
   auto const contender = chosen(contenders, {std::string(behavior)}).front();
   auto const& scenario = set->scenarios[*number];
   auto run = contender.run(scenario, run_options(*set, *number, command.options), command.replay.has_value());
@@ -235,7 +236,7 @@ void run_sets(std::vector<ScenarioSet<World>> const& sets, std::vector<std::file
   std::size_t jobs = 0, results = 0;
   auto const begin = std::chrono::steady_clock::now();
   {
-    SaysHowToGoOn const on_interrupt;
+    SaysWhyItEnds const at_end;
     ProgressBar bar;  // one for all sets: each may take less than a minute
     options.progress = [&bar](std::size_t done, std::size_t total) { bar(done, total); };
     for (std::size_t s = 0; s < sets.size(); ++s) {
@@ -264,7 +265,7 @@ void run_sets(std::vector<ScenarioSet<World>> const& sets, std::vector<std::file
 
 /// The `main` of a benchmark program: reads scenario sets whose behaviours are those of `World`, runs `contenders` on
 /// them, keeps the results in a database, and prints a table. `--help` lists the options. Returns the exit code: 0, or
-/// 2 after an error, which it prints in one line.
+/// 2 after an error, which it prints in one line. A planner that calls `exit` makes it 1.
 template <class World>
 int benchmark_main(int argc, char const* const* argv, std::vector<Contender<World>> const& contenders,
                    BenchmarkDefaults defaults = {}) {

@@ -352,12 +352,12 @@ extern "C" inline void refuse_exit() {
   std::_Exit(EXIT_FAILURE);
 }
 
-CAMBIUM_COLD SaysHowToGoOn::SaysHowToGoOn() : before_(std::signal(SIGINT, &say_how_to_go_on)) {
+CAMBIUM_COLD SaysWhyItEnds::SaysWhyItEnds() : before_(std::signal(SIGINT, &say_how_to_go_on)) {
   if (before_ == SIG_IGN) std::signal(SIGINT, SIG_IGN);
   [[maybe_unused]] static int const registered = std::atexit(&refuse_exit);
   running_process = this_process();
 }
-CAMBIUM_COLD SaysHowToGoOn::~SaysHowToGoOn() {
+CAMBIUM_COLD SaysWhyItEnds::~SaysWhyItEnds() {
   running_process = -1;
   std::signal(SIGINT, before_);
 }

@@ -98,7 +98,7 @@ struct RunResult {
         parameter("least_time_to_collision", &P::least_time_to_collision, "s", non_negative,
                   "to any road user or object, if all keep their speeds and lanes; 10 s: that or more"),
         parameter("post_encroachment_time", &P::post_encroachment_time, "s", non_negative,
-                  "least, where ways cross; on the grid of the steps"),
+                  "least, where ways cross; to what a body takes to move on by its length"),
         parameter("required_deceleration", &P::required_deceleration, "m/s^2", non_negative,
                   "largest, to touch nobody, if all others keep their speeds and lanes"),
         parameter("hardest_braking", &P::hardest_braking, "m/s^2", non_negative, "deceleration"),

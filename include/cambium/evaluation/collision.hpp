@@ -36,14 +36,26 @@ template <class World>
   return geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
 }
 
+namespace detail {
+
+/// The state of the agent at `slot` before the last step, see `World::before_step`; null if no step led here, or if it
+/// did not drive then.
+template <class World>
+[[nodiscard]] auto const* state_before(World const& world, Slot slot) {
+  auto const* const before = world.before_step();
+  bool const drove = before != nullptr && (*before)[slot].status == AgentStatus::driving;
+  return drove ? &(*before)[slot].state : nullptr;
+}
+
+}  // namespace detail
+
 /// The motion of the box of the agent at `slot` in the last step, see `World::before_step`. It rests where it is if the
 /// agent was not in traffic before, or if no step led to the world's frame.
 template <class World>
 [[nodiscard]] geometry::MovingBox motion_at(World const& world, Slot slot) {
   auto const& shape = world.roster().agents[slot].shape;
   auto const& now = world.frame().agents[slot].state;
-  if (auto const* const before = world.before_step())
-    if (auto const& record = (*before)[slot]; record.status == AgentStatus::driving) return {shape, record.state, now};
+  if (auto const* const from = detail::state_before(world, slot)) return {shape, *from, now};
   return {shape, geometry::Pose{now.x, now.y, now.heading}};
 }
 
@@ -138,9 +150,8 @@ template <class World>
 template <class World>
 [[nodiscard]] double speed_in_step(World const& world, Slot slot) {
   double const now = world.frame().agents[slot].state.speed;
-  auto const* const before = world.before_step();
-  bool const is_known = before != nullptr && (*before)[slot].status == AgentStatus::driving;
-  return is_known ? std::max(now, double{(*before)[slot].state.speed}) : now;
+  auto const* const before = state_before(world, slot);
+  return before != nullptr ? std::max(now, double{before->speed}) : now;
 }
 
 /// Whether the agent's body is between the borders of its lane, at its rear, its reference point and its front; it may

@@ -30,8 +30,9 @@ namespace cambium {
 ///
 /// The reference point is the rear axle, as in `SingleTrack`. A speed, a place and a heading may each be off by a
 /// tolerance in each step, but not in every step: with a `Drift` that the caller keeps, errors add up, and their sums
-/// have bounds, too. True only right after a step, see `World::before_step`; who enters or does not move is never
-/// infeasible. O(1).
+/// have bounds, too: 5 cm/s sideways pass, 6 cm/s do not. These are for steps of up to 0.25 s: within longer ones a
+/// vehicle can swerve and return, or start and stop, and is then taken for one that drifts. True only right after a
+/// step, see `World::before_step`; who enters or does not move is never infeasible. O(1).
 struct Infeasible {
   /// What is wrong with a motion.
   enum class Flaw : std::uint8_t {
@@ -46,7 +47,7 @@ struct Infeasible {
     turn_drift,
     speed_drift
   };
-  /// Sums of an agent's errors in its last steps; an error fades with a time constant of 5 s.
+  /// Sums of an agent's errors in its last steps; an error fades with a time constant of 2 s.
   struct Drift {
     double along = 0.0;   ///< by how much its way was longer than its speeds say [m]
     double across = 0.0;  ///< how far it led to the left of its headings [m]
@@ -72,10 +73,10 @@ struct Infeasible {
                                  {"changes its speed by", " m/s^2"},
                                  {"turns by", " rad in a step"},
                                  {"needs", " m/s^2 of its tyres"},
-                                 {"drifts from its speeds by", " m in 5 s"},
-                                 {"drifts off its headings by", " m in 5 s"},
-                                 {"turns more than it can, by", " rad in 5 s"},
-                                 {"changes its speed more than it can, by", " m/s in 5 s"}};
+                                 {"drifts from its speeds by", " m in 2 s"},
+                                 {"drifts off its headings by", " m in 2 s"},
+                                 {"turns more than it can, by", " rad in 2 s"},
+                                 {"changes its speed more than it can, by", " m/s in 2 s"}};
       auto const& [does, unit] = words[static_cast<std::size_t>(finding.flaw)];
       if (finding.flaw == Flaw::none) return "moves as vehicles can";
       return std::string(does) + " " + detail::rounded_text(finding.driven) + unit + ", possible are " +
@@ -97,7 +98,7 @@ struct Infeasible {
                           parameter("place", &P::place, "m", Range{0, 10}, "tolerance of positions in a step"),
                           parameter("heading", &P::heading, "rad", Range{0, 1}, "tolerance of headings"),
                           parameter("speed", &P::speed, "m/s", Range{0, 10}, "tolerance of speeds"),
-                          parameter("drift", &P::drift, "m", Range{0, 10}, "tolerance of positions in 5 s"));
+                          parameter("drift", &P::drift, "m", Range{0, 10}, "tolerance of positions in 2 s"));
   }
 
   template <class World>
@@ -148,9 +149,11 @@ struct Infeasible {
     bool const steers = std::isfinite(bend);  // others turn on the spot, and then go anywhere
     double const swing = steers ? std::min(most * dt, bend * farthest * farthest) / 6.0
                                 : most * dt / 6.0 + std::abs(portable::sin_cos(0.5 * turn).sin) * farthest;
-    double const off = place + 0.5 * heading * std::abs(along) + swing;
+    bool const rests = std::max(before.speed, now.speed) <= speed;
+    double const off = (rests ? place * std::min(1.0, 0.25 * dt) : place) + 0.5 * heading * std::abs(along) + swing;
     if (std::abs(across) > off) return {Flaw::sideways, across, std::copysign(off, across)};
-    double const turned = std::max(0.0, std::abs(turn) - heading), moving = std::max(0.0, mean - speed);
+    double const slowest = std::min(before.speed, mean);  // dynamics ask for limits at the begin of a step
+    double const turned = std::max(0.0, std::abs(turn) - heading), moving = std::max(0.0, slowest - speed);
     if (turned > bend * farthest) return {Flaw::turn, turn, std::copysign(bend * farthest, turn)};
     double const lateral = moving * turned / dt, most_lateral = largest_lateral_of(dynamics);
     if (lateral > most_lateral) return {Flaw::grip, lateral, most_lateral};
@@ -163,18 +166,17 @@ struct Infeasible {
     drifts = {faded * earlier.along + along - chord * way, steers ? faded * earlier.across + across : 0.0,
               faded * earlier.turn + std::max(0.0, std::abs(turn) - std::min(bend * std::abs(way), grips)),
               faded * earlier.speed + std::max({0.0, change - highest * dt, lowest * dt - change})};
-    double const slip = drift * std::min(1.0, 0.05 + std::abs(mean));            // one that stands does not slip
-    double const far = slip + most * dt / 8.0, aside = slip + most * dt / 24.0;  // a stop within a step adds to these
+    double const far = drift + most * dt / 8.0, aside = drift + most * dt / 24.0;  // a stop within a step adds to these
     if (std::abs(drifts.along) > far) return {Flaw::drift, drifts.along, std::copysign(far, drifts.along)};
     if (std::abs(drifts.across) > aside) return {Flaw::side_drift, drifts.across, std::copysign(aside, drifts.across)};
-    double const round = 2.0 * heading + (bend * std::abs(way) < grips ? bend * far : 0.0);
+    double const round = 2.0 * heading + (steers ? bend * far : 0.0);
     if (drifts.turn > round) return {Flaw::turn_drift, drifts.turn, round};
     if (drifts.speed > 2.0 * speed) return {Flaw::speed_drift, drifts.speed, 2.0 * speed};
     return {};
   }
 
  private:
-  static constexpr double fading = 5.0;  ///< time constant [s]
+  static constexpr double fading = 2.0;  ///< time constant [s]
 
   struct Accelerations {
     double lowest, highest;

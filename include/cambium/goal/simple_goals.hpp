@@ -131,7 +131,7 @@ struct StateLimits {
 };
 
 /// Reached when the agent drives along a lane within limits in its Frenet frame, bounds included. `lane` none means the
-/// agent's current lane.
+/// agent's current lane; without `left` and `right`, its reference point is between the borders.
 struct LaneLimits {
   LaneId lane = none<LaneId>;
   double from = 0.0;                                               ///< along the lane's path [m]
@@ -166,7 +166,8 @@ struct LaneLimits {
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
     return (!is_valid(lane) || at.lane == lane) && at.lane_position >= from && at.lane_position <= to &&
            at.lateral <= left && at.lateral >= -right && std::abs(at.heading_error) <= heading_error &&
-           at.speed >= lowest_speed && at.speed <= highest_speed;
+           at.speed >= lowest_speed && at.speed <= highest_speed &&
+           (std::isfinite(left) || std::isfinite(right) || detail::is_in_lane(at));
   }
 };
 

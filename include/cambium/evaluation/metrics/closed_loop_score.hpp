@@ -39,7 +39,8 @@ namespace cambium {
 /// Departures: `expected_progress` takes the place of a human driver's. Accelerations are differences of states, not
 /// filtered, so that what lasts for a step only counts, too. The time to collision follows the lanes, not the headings,
 /// and is exact, not on a grid of 0.1 s. Each collision counts as one with a vehicle: nuPlan punishes those with
-/// objects less. Progress has no floor of 2 m, and what equals a bound of comfort is comfortable.
+/// objects less. A collision counts between two frames, too, and the higher of the speeds of that step decides who
+/// stood. Progress has no floor of 2 m, and what equals a bound of comfort is comfortable.
 struct ClosedLoopScore {
   double expected_progress = 0.0;
   double least_progress = 0.2;
@@ -104,8 +105,8 @@ struct ClosedLoopScore {
   template <class World>
   void observe(World& world, Slot slot, double dt) {
     auto const& record = world.frame().agents[slot];
-    if (record.status != AgentStatus::driving) return;
     if (AtFaultCollision{}.in_last_step(world, slot)) parts_.no_fault = 0.0;
+    if (record.status != AgentStatus::driving) return;
     bool const leaves = OffRoad{}(world, slot);
     if (leaves) parts_.on_road = 0.0;
     if (parts_.keeps_distance > 0.0 && is_close(world, slot, leaves)) parts_.keeps_distance = 0.0;

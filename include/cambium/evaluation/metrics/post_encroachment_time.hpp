@@ -76,16 +76,14 @@ class PostEncroachmentTime {
   /// Calls `f(footprint)` for where the agent at `slot` is, and was since the last frame.
   template <class World, class F>
   static void for_each_place(World const& world, Slot slot, F const& f) {
-    auto const& record = world.frame().agents[slot];
-    auto const* const before = world.before_step();
+    auto const& now = world.frame().agents[slot].state;
     int parts = 1;
     double dt = 0.0;
-    if (before != nullptr && (*before)[slot].status == AgentStatus::driving) {
-      auto const& then = (*before)[slot].state;
+    if (auto const* const before = detail::state_before(world, slot)) {
       constexpr double most = 100.0;
-      double const way = portable::hypot(record.state.x - then.x, record.state.y - then.y);
+      double const way = portable::hypot(now.x - before->x, now.y - before->y);
       parts = static_cast<int>(std::ceil(std::clamp(way / world.roster().agents[slot].shape.length(), 1.0, most)));
-      dt = record.state.time - then.time;
+      dt = now.time - before->time;
     }
     auto const motion = motion_at(world, slot);
     for (int i = 1; i <= parts; ++i) {

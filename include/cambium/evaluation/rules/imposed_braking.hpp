@@ -27,7 +27,7 @@ template <class World>
 }
 
 /// Whether there is anything within `distance` [m] ahead of an agent's front end that may make a driver brake from
-/// `speed` [m/s]: a road user, an object, a sign, a light that is not green, a conflict, the end of its lane or its
+/// `speed` [m/s]: a road user, an object, a sign, a yellow or red light, a conflict, the end of its lane or its
 /// way, a lower speed limit, or a bend. O(conflicts + signals + bends there).
 template <class World>
 [[nodiscard]] bool has_reason_to_brake(World& world, Slot slot, double distance, double speed) {
@@ -55,7 +55,7 @@ template <class World>
 /// How hard others had to brake because of an agent, beyond what the rules ask of them: the hardest braking [m/s^2] of
 /// another road user
 /// - that has the right of way over the agent, in a conflict in which the agent is, and brakes for nobody else;
-/// - right behind the agent, which has changed into its lane in the last `memory` [s];
+/// - right behind the agent, which has changed into its lane in the last `memory` [s], and brakes less hard itself;
 /// - right behind the agent, which in the last `reaction` [s] braked harder than `hard` for nothing.
 /// 0 if none braked harder than `comfortable`. O(agents + conflicts near) per step.
 struct ImposedBraking {
@@ -88,11 +88,14 @@ struct ImposedBraking {
     auto const& then = (*before)[slot];
     if (then.status == AgentStatus::driving && then.lane.corridor != record.lane.corridor) changed_ = world.time();
     if (brakes_for_nothing(world, slot, dt)) braked_ = world.time();
-    bool const is_cause = world.time() - changed_ <= memory || world.time() - braked_ <= reaction;
+    double const own = -static_cast<double>(record.acceleration);
+    bool const has_changed = world.time() - changed_ <= memory, has_braked = world.time() - braked_ <= reaction;
     for (Slot other{}; index_of(other) < world.size(); ++other) {
       double const braking = -static_cast<double>(world.frame().agents[other].acceleration);
       if (other == slot || !in_traffic(world, other) || braking <= std::max(comfortable, hardest_)) continue;
-      if (takes_right_of_way(world, slot, other) || (is_cause && follows(world, other, slot))) hardest_ = braking;
+      if (takes_right_of_way(world, slot, other) ||
+          ((has_braked || (has_changed && braking > own)) && follows(world, other, slot)))
+        hardest_ = braking;
     }
   }
 
