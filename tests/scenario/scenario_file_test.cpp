@@ -340,7 +340,7 @@ TEST_CASE("a road's name may hold a slash") {
   auto const road = support::map_of(
       {.id = "a/b", .line = map::lay_from({}, {{100.0}}), .sections = {{.right = map::equal_lanes(1)}}});
   detail::LaneTable const table;
-  auto const number = table.lane("a/b/0/-1", "f.json");
+  auto const number = table.lane("a/b/0/-1");
   CHECK(table.lane_in(*road, number, "f.json") == LaneId{0});
   CHECK(table.number_of(*road, LaneId{0}) == number);
 }

@@ -93,8 +93,8 @@ template <class Look>
   for (double time = 0.0; time < longest;) {
     auto const [gap, closing] = look(time);
     if (gap <= touching) return time;
-    double const fastest = std::sqrt(closing * closing + 2.0 * quickening * gap);  // when it has closed
-    time += std::max(shortest_step, 2.0 * gap / (closing + fastest));
+    double const at_last = std::sqrt(closing * closing + 2.0 * quickening * gap);  // when it has closed
+    time += std::max(shortest_step, 2.0 * gap / (closing + at_last));
   }
   return longest;
 }
