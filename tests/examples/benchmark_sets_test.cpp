@@ -36,12 +36,12 @@ TEST_CASE(
   CHECK(sets == std::set<std::string>{"lane_change_0", "lane_change_20", "lane_change_40", "lane_change_80"});
 }
 
-TEST_CASE("the exam has twelve situations in traffic of three temperaments, and other scenarios to train on") {
+TEST_CASE("the exam has twenty situations among five populations, and other scenarios to train on") {
   Program const program("benchmark");
   browser::TemporaryFolder const folder;
   using Seeds = std::map<std::string, std::set<std::uint64_t>>;  // by set: a title has one hash for each split
   auto const run = [&](std::string const& split, std::string const& name) {
-    program.output({"--set", "planners", "--behaviors", "idm,urban", "--scenarios", "3", "--split", split, "--replays",
+    program.output({"--set", "planners", "--behaviors", "idm,urban", "--scenarios", "1", "--split", split, "--replays",
                     "none", "--db", folder.file(name + ".db"), "--json", folder.file(name + ".json")});
     Seeds seeds;
     cambium::ResultStore::existing(folder.file(name + ".db")).for_each([&](cambium::ResultRow const& row) {
@@ -50,28 +50,29 @@ TEST_CASE("the exam has twelve situations in traffic of three temperaments, and 
     return seeds;
   };
   auto const test = run("test", "test"), train = run("train", "train");
-  CHECK(test.size() == 12);
-  CHECK(train.size() == 12);
+  CHECK(test.size() == 20);
+  CHECK(train.size() == 20);
   CHECK(run("train", "again") == train);
   std::set<std::uint64_t> all;
   for (auto const& seeds : {test, train})
     for (auto const& [hash, of_set] : seeds) {
-      CHECK(of_set.size() == 9);
+      CHECK(of_set.size() == 1);  // the same for all populations
       all.insert(of_set.begin(), of_set.end());
     }
-  CHECK(all.size() == 2 * 12 * 9);  // no scenario is in both
+  CHECK(all.size() == 2 * 20);  // no scenario is in both
 
   std::set<std::string> kinds;
   double idm = 0.0, intersection = 0.0;
   for (auto const& row : nlohmann::json::parse(content_of(folder.file("test.json")))) {
     CAPTURE(row.dump());
-    CHECK(row["scenarios"] == 3);
+    CHECK(row["scenarios"] == 1);
     CHECK(row["error"] == 0.0);
-    kinds.insert(std::string(row["situation"]) + ", " + std::string(row["traffic"]));
-    (row["planner"] == "idm" ? idm : intersection) += double(row["success"]) / 36.0;
+    CHECK(row["traffic"] == row["population"]);
+    kinds.insert(std::string(row["situation"]) + ", " + std::string(row["population"]));
+    (row["planner"] == "idm" ? idm : intersection) += double(row["success"]) / 100.0;
   }
-  CHECK(kinds.size() == 36);
-  CHECK(idm > 0.5);  // an exam that can be passed, but not by following the next vehicle
-  CHECK(idm < 0.9);
+  CHECK(kinds.size() == 100);
+  CHECK(idm > 0.2);  // an exam that can be passed, but not by following the next vehicle
+  CHECK(idm < 0.8);
   CHECK(intersection > idm);
 }

@@ -104,8 +104,14 @@ TEST_CASE("failures of the benchmark leave snapshots that open at the desk") {
   browser::TemporaryFolder const folder;
   auto const db = folder.file("r.db");
   // IDM never gets to the goal; the others have no time to plan.
-  REQUIRE(benchmark.run({"--set", "cut_out", "--behaviors", "idm", "--scenarios", "1", "--db", db}).code == 0);
-  REQUIRE(benchmark.run({"--set", "cut_out", "--scenarios", "1", "--plan-limit", "1e-9", "--db", db}).code == 0);
+  REQUIRE(benchmark
+              .run({"--set", "cut_out", "--populations", "aggressive,inattentive,mixed", "--behaviors", "idm",
+                    "--scenarios", "1", "--db", db})
+              .code == 0);
+  REQUIRE(benchmark
+              .run({"--set", "cut_out", "--populations", "aggressive,inattentive,mixed", "--scenarios", "1",
+                    "--plan-limit", "1e-9", "--db", db})
+              .code == 0);
   std::vector<std::string> found;
   for (auto const& file : snapshots_in(folder.path() / "r_replays"))
     if (file.ends_with(".snapshot")) found.push_back(file);

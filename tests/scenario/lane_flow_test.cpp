@@ -220,3 +220,72 @@ TEST_CASE("what a flow cannot do is an error that says where and what to do") {
   CHECK(refusal("highway.xodr", with({"law.time_headway", TruncatedNormal{1.0, 0.5}}))
             .find("law.time_headway: is -inf") != std::string::npos);
 }
+
+TEST_CASE("populations drive the same vehicles from the same places, each in its way") {
+  using People = World<BehaviorSet<Mobil, HumanDriver<Mobil>>, InterpolateExecution, SingleTrack>;
+  using P = TrafficPopulation;
+  auto const map = support::own_map("highway.xodr");
+  auto const recipe_of = [&](std::vector<P> const& populations) {
+    ScenarioRecipe<People> recipe{.seed = 4, .scenarios = 10, .populations = populations};
+    LaneFlow<People> flow{.from = map->find_lane("1", 0.0, -2),
+                          .traffic = {.end = 700.0, .speed = Uniform{18.0, 22.0}},
+                          .drivers = {{.behavior = Mobil{.law = {.desired_speed = 25.0}}, .people = true}}};
+    recipe.flows = {flow};
+    flow.from = map->find_lane("1", 0.0, -3);
+    flow.drivers = {{.behavior = Mobil{.law = {.desired_speed = 30.0}}}};  // no people
+    flow.ego = LaneFlow<People>::Ego::first;
+    recipe.flows.push_back(flow);
+    return recipe;
+  };
+  std::vector<P> const all{P::as_given, P::timid, P::aggressive, P::inattentive, P::mixed};
+  auto const scenarios = draw(recipe_of(all), map);
+  REQUIRE(scenarios.size() == 50);
+  CHECK(to_string(draw(recipe_of({P::timid}), map)[3].agents.front()) == to_string(scenarios[13].agents.front()));
+
+  double headway[5] = {}, speed[5] = {};
+  std::size_t people[5] = {}, human[5] = {};
+  for (std::size_t p = 0; p < 5; ++p)
+    for (std::size_t i = 0; i < 10; ++i) {
+      auto const &scenario = scenarios[10 * p + i], &given = scenarios[i];
+      CHECK(scenario.population == to_string(all[p]));
+      CHECK(scenario.seed == given.seed);
+      REQUIRE(scenario.agents.size() == given.agents.size());
+      for (std::size_t a = 0; a < given.agents.size(); ++a) {
+        auto const &one = scenario.agents[a], &twin = given.agents[a];
+        CHECK(one.position == twin.position);
+        CHECK(one.speed == twin.speed);
+        CHECK(one.shape == twin.shape);
+        auto const* const wrapped = std::get_if<HumanDriver<Mobil>>(&one.behavior.given());
+        auto const& driver = wrapped != nullptr ? wrapped->nominal : std::get<Mobil>(one.behavior.given());
+        if (driver.law.desired_speed == 30.0) continue;
+        ++people[p];
+        human[p] += wrapped != nullptr;
+        headway[p] += driver.law.time_headway;
+        speed[p] += driver.law.desired_speed;
+      }
+    }
+  for (std::size_t p = 0; p < 5; ++p) {
+    REQUIRE(people[p] > 50);
+    headway[p] /= static_cast<double>(people[p]);
+    speed[p] /= static_cast<double>(people[p]);
+  }
+  CHECK(speed[0] == 25.0);
+  CHECK(headway[1] == doctest::Approx(presets::timid().time_headway).epsilon(0.05));
+  CHECK(headway[2] == doctest::Approx(presets::aggressive().time_headway).epsilon(0.05));
+  CHECK(speed[1] < 25.0);
+  CHECK(speed[2] > 26.0);
+  CHECK(human[1] + human[2] == 0);
+  CHECK(human[3] == people[3]);
+  CHECK(human[4] > people[4] / 8);
+  CHECK(human[4] < people[4] / 2);
+
+  ScenarioRecipe<Sim> lacking{.scenarios = 1, .populations = {P::inattentive}};
+  lacking.flows = {Flow{.from = highway_lane(-2), .drivers = {{.behavior = Mobil{}, .people = true}}}};
+  auto const refused = support::error_of([&] { return draw(lacking, map); });
+  CHECK(refused ==
+        "recipe.flows[0]: needs HumanDriver of mobil, which the program lacks; add it to the BehaviorSet of the "
+        "program's World, or leave out inattentive and mixed");
+  lacking.populations.clear();
+  CHECK(support::error_of([&] { return draw(lacking, map); }) ==
+        "recipe: has no populations; leave them out, or name some");
+}

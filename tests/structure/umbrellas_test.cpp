@@ -60,6 +60,7 @@ bool needs_more(std::string const& header) {
                                     "scenario/highway_site.hpp",
                                     "scenario/junction_site.hpp",
                                     "scenario/lane_flow.hpp",
+                                    "scenario/traffic_population.hpp",
                                     "scenario/merging_site.hpp",
                                     "scenario/recipe.hpp",
                                     "scenario/ring_road.hpp",

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "cambium/behavior/drivers.hpp"
+#include "cambium/core/random.hpp"
 #include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
@@ -126,6 +127,22 @@ struct Temperament {
   double reaction = 0.8;              ///< `Signals::reaction` [s]
   double rolling_speed = 0.0;         ///< `Signals::rolling_speed` [m/s]
 
+  /// A temperament near this one: each number is drawn evenly within 25 % of its own, the speed factor within 10 %.
+  [[nodiscard]] Temperament drawn_around(RandomStream& random) const {
+    auto one = *this;
+    auto const vary = [&](double& number, double share = 0.25) {
+      number *= 1.0 - share + 2.0 * share * uniform01(random);
+    };
+    for (auto* const number :
+         {&one.idm.time_headway, &one.idm.minimum_gap, &one.idm.maximum_acceleration, &one.idm.comfortable_deceleration,
+          &one.politeness, &one.threshold, &one.lane_change_braking, &one.lateral_acceleration, &one.signal_braking,
+          &one.change_duration, &one.others_headway, &one.merging_headway, &one.late_at_red, &one.time_margin,
+          &one.minor_road_margin, &one.reaction, &one.rolling_speed})
+      vary(*number);
+    vary(one.speed_factor, 0.1);
+    return one;
+  }
+
   /// `driver` with this temperament: sets those of the above that its parts have. A law other than IDM gets what every
   /// law has.
   template <class Law, class Lateral, class... Heeds>
@@ -187,21 +204,38 @@ struct Temperament {
   constexpr void give(Other&) const {}
 };
 
+[[nodiscard]] constexpr Temperament timid_temperament() {
+  return {.idm = timid(),
+          .politeness = 0.5,
+          .threshold = 0.3,
+          .lane_change_braking = 2.0,
+          .lateral_acceleration = 2.0,
+          .signal_braking = 4.0,
+          .merging_headway = 2.0,
+          .speed_factor = 0.95,
+          .time_margin = 2.0,
+          .minor_road_margin = 4.0};
+}
+[[nodiscard]] constexpr Temperament aggressive_temperament() {
+  return {.idm = aggressive(),
+          .politeness = 0.0,
+          .threshold = 0.1,
+          .lane_change_braking = 5.0,
+          .lateral_acceleration = 4.0,
+          .signal_braking = 2.0,
+          .merging_headway = 0.5,
+          .late_at_red = 1.0,
+          .speed_factor = 1.1,
+          .time_margin = 0.3,
+          .minor_road_margin = 2.0,
+          .rolling_speed = 3.0};
+}
+
 /// A whole driver of that temperament, such as `timid<Mobil>()`, `aggressive<HumanDriver<Intersection>>()`. Its desired
 /// speed is that of a motorway: set another one elsewhere, or let it heed `SpeedLimit`.
 template <class Driver>
 [[nodiscard]] constexpr Driver timid() {
-  return Temperament{.idm = timid(),
-                     .politeness = 0.5,
-                     .threshold = 0.3,
-                     .lane_change_braking = 2.0,
-                     .lateral_acceleration = 2.0,
-                     .signal_braking = 4.0,
-                     .merging_headway = 2.0,
-                     .speed_factor = 0.95,
-                     .time_margin = 2.0,
-                     .minor_road_margin = 4.0}
-      .of(Driver{});
+  return timid_temperament().of(Driver{});
 }
 /// A driver of usual temperament: the parameters of `Temperament{}`.
 template <class Driver>
@@ -211,19 +245,7 @@ template <class Driver>
 /// A driver who keeps short gaps and changes lanes for small advantages.
 template <class Driver>
 [[nodiscard]] constexpr Driver aggressive() {
-  return Temperament{.idm = aggressive(),
-                     .politeness = 0.0,
-                     .threshold = 0.1,
-                     .lane_change_braking = 5.0,
-                     .lateral_acceleration = 4.0,
-                     .signal_braking = 2.0,
-                     .merging_headway = 0.5,
-                     .late_at_red = 1.0,
-                     .speed_factor = 1.1,
-                     .time_margin = 0.3,
-                     .minor_road_margin = 2.0,
-                     .rolling_speed = 3.0}
-      .of(Driver{});
+  return aggressive_temperament().of(Driver{});
 }
 
 /// A cyclist, to be combined with `bicycle_dynamics`. The numbers are ours: 18 km/h, slightly below SUMO's default

@@ -48,7 +48,8 @@ struct BenchmarkCommand {
   BenchmarkOptions options{.replays = Replays::failures};
   std::vector<std::string> sets{}, behaviors{};  ///< names; without behaviours all
   std::optional<std::uint64_t> scenarios{}, seed{};
-  bool trains = false;  ///< draws the training split
+  std::vector<TrafficPopulation> populations{};  ///< of those that recipes name; without any all
+  bool trains = false;                           ///< draws the training split
   bool lists = false;
   std::filesystem::path database{};
   std::optional<std::string> only{}, replay{}, json{};
@@ -71,13 +72,14 @@ struct BenchmarkCommand {
 [[nodiscard]] std::string source_of(BenchmarkCommand const& command, std::filesystem::path const& file,
                                     std::filesystem::path const& folder);
 
-/// The results on the scenarios of a set that share a title; `traffic` is empty where that is the set's own title.
+/// The results on the scenarios of a set with one population, or, without such, one title; `traffic` is empty where
+/// that is the set's own title.
 struct TrafficGroup {
   std::string traffic{};
   ResultGroup results{};
 };
 
-/// The groups by titles of scenarios, in their order.
+/// The groups by populations or titles of scenarios, in their order.
 template <class World>
 [[nodiscard]] std::vector<TrafficGroup> by_traffic(std::vector<ResultGroup> const& groups,
                                                    std::vector<ScenarioSet<World>> const& sets) {
@@ -90,7 +92,8 @@ template <class World>
     whole.rows.clear();
     auto const first = static_cast<std::ptrdiff_t>(parts.size());
     for (auto const& row : group.rows) {
-      std::string title = set.scenarios[static_cast<std::size_t>(row.scenario)].title;
+      auto const& scenario = set.scenarios[static_cast<std::size_t>(row.scenario)];
+      auto title = scenario.population.empty() ? scenario.title : scenario.population;
       if (title == set.title) title.clear();
       auto part = std::ranges::find(parts.begin() + first, parts.end(), title, &TrafficGroup::traffic);
       if (part == parts.end()) part = parts.insert(parts.end(), {title, whole});
@@ -160,6 +163,11 @@ template <class World>
       is_drawn = true;
       if (command.scenarios) recipe.scenarios = static_cast<std::uint32_t>(*command.scenarios);
       if (command.seed) recipe.seed = *command.seed;
+      if (!command.populations.empty())
+        std::erase_if(recipe.populations, [&](auto one) { return std::ranges::count(command.populations, one) == 0; });
+      if (recipe.populations.empty())
+        throw Error(file.string(), "has none of the populations of --populations",
+                    "leave out the option, or name others");
       if (!command.trains) return;
       if (recipe.first >= first_to_train)
         throw Error(file.string(), "a recipe begins at scenario " + std::to_string(recipe.first),

@@ -117,6 +117,18 @@ inline void add_benchmark_options(CLI::App& app, BenchmarkCommand& command) {
             store_in(command.scenarios));
   add_whole(app, "--seed", "S", 0, ~std::uint64_t{0}, "seed of the recipes, instead of their own",
             store_in(command.seed));
+  add_text(app, "--populations", "A,B,...",
+           "who drives the others, of the populations that a recipe names: as_given, timid, aggressive, inattentive, "
+           "mixed; default: all of these",
+           [&](std::string const& word) {
+             auto const known = split(population_names, "|");
+             for (auto const part : split(word, ",")) {
+               auto const at = std::ranges::find(known, trimmed(part));
+               if (at == known.end())
+                 throw Error("--populations", "is '" + word + "'", "name some of " + joined(known, ", "));
+               command.populations.push_back(static_cast<TrafficPopulation>(at - known.begin()));
+             }
+           });
   add_text(app, "--split", "train|test",
            "train: other scenarios of the recipes, to tune a behaviour on; test (default): those to report",
            [&](auto const& word) {
@@ -202,7 +214,7 @@ CAMBIUM_COLD std::optional<BenchmarkCommand> parse_benchmark_command(int argc, c
   if (command.sets.empty()) command.sets = {defaults.set};
   check_command(command);
   command.options.replay_folder = replay_folder(command.database);
-  for (std::string const name : {"--scenarios", "--seed", "--split", "--plan-limit"})
+  for (std::string const name : {"--scenarios", "--seed", "--populations", "--split", "--plan-limit"})
     if (is_given(name.c_str())) command.drawing += " " + name + " " + app.get_option(name)->as<std::string>();
   return command;
 }
@@ -279,6 +291,7 @@ CAMBIUM_COLD std::string summary_json(std::vector<TrafficGroup> const& parts) {
     std::vector<JsonValue::Member> row{{"planner", {group.behavior}},
                                        {"situation", {group.set}},
                                        {"traffic", traffic.empty() ? JsonValue{} : JsonValue{traffic}},
+                                       {"population", {group.rows.front().population}},
                                        {"set", {group.set}},
                                        {"set_hash", {hash_text(group.set_hash)}},
                                        {"behavior", {group.behavior}},

@@ -26,7 +26,7 @@ namespace cambium {
                         .parameters_hash = key.parameters_hash,
                         .version = key.version,
                         .label = key.behavior});
-    groups.back().rows.push_back({key.scenario, row.seed, row.result, row.times});
+    groups.back().rows.push_back({key.scenario, row.seed, row.result, row.times, row.population});
   });
   for (auto& group : groups) {
     group.set = store.title_of(group.set_hash);

@@ -129,16 +129,27 @@ namespace detail {
   return table;
 }
 
+/// How runs ended, and how long their plans took.
+struct OutcomeCount {
+  std::size_t runs = 0, successes = 0, collisions = 0;
+  double decisions = 0.0, ms = 0.0;
+
+  void add(ResultGroup::Row const& row) {
+    ++runs;
+    successes += row.result.success;
+    collisions += row.result.collision;
+    decisions += static_cast<double>(row.times.decisions);
+    ms += static_cast<double>(row.times.decisions) * row.times.mean_ms;
+  }
+  /// "28/30 (1)".
+  [[nodiscard]] std::string text() const {
+    return std::to_string(successes) + "/" + std::to_string(runs) +
+           (collisions > 0 ? " (" + std::to_string(collisions) + ")" : "");
+  }
+};
+
 /// Successes and collisions of each behaviour on each set, and its planning time.
 [[nodiscard]] inline Table overview_of(std::vector<ResultGroup> const& groups) {
-  struct Sum {
-    std::size_t runs = 0, successes = 0, collisions = 0;
-    double decisions = 0.0, ms = 0.0;
-    [[nodiscard]] std::string text() const {
-      return std::to_string(successes) + "/" + std::to_string(runs) +
-             (collisions > 0 ? " (" + std::to_string(collisions) + ")" : "");
-    }
-  };
   Table table{.title = "successes (collisions)", .head = {"behaviour"}};
   std::vector<std::string> sets, labels;
   for (auto const& group : groups) {
@@ -148,22 +159,14 @@ namespace detail {
   table.head.insert(table.head.end(), sets.begin(), sets.end());
   table.head.insert(table.head.end(), {"all", "mean time of a plan [ms]"});
   for (auto const& label : labels) {
-    Sum all;
+    OutcomeCount all;
     std::vector<std::string> row{label};
     for (auto const& set : sets) {
-      Sum sum;
-      for (auto const& group : groups) {
-        if (group.label != label || group.set_label != set) continue;
-        for (auto const& [scenario, seed, result, times] : group.rows) {
-          for (auto* const one : {&sum, &all}) {
-            ++one->runs;
-            one->successes += result.success;
-            one->collisions += result.collision;
-            one->decisions += static_cast<double>(times.decisions);
-            one->ms += static_cast<double>(times.decisions) * times.mean_ms;
-          }
-        }
-      }
+      OutcomeCount sum;
+      for (auto const& group : groups)
+        if (group.label == label && group.set_label == set)
+          for (auto const& run : group.rows)
+            for (auto* const one : {&sum, &all}) one->add(run);
       row.push_back(sum.runs > 0 ? sum.text() : "-");
     }
     row.push_back(all.text());
@@ -183,6 +186,27 @@ namespace detail {
   for (auto const& [criterion, count] : counts)
     text += (text.empty() ? "" : ", ") + criterion + " " + std::to_string(count);
   return text;
+}
+
+/// Successes and collisions of each behaviour among each population of a set; no rows where there are fewer than two.
+[[nodiscard]] inline Table population_table(Report const& report, std::vector<std::size_t> const& set) {
+  Table table{.title = "successes (collisions) by population", .head = {"behaviour"}};
+  std::vector<std::string> populations;
+  for (auto const g : set)
+    for (auto const& row : report.groups[g].rows)
+      if (std::ranges::find(populations, row.population) == populations.end()) populations.push_back(row.population);
+  if (populations.size() < 2) return table;
+  table.head.insert(table.head.end(), populations.begin(), populations.end());
+  for (auto const g : set) {
+    auto& cells = table.rows.emplace_back(std::vector{report.groups[g].label});
+    for (auto const& population : populations) {
+      OutcomeCount count;
+      for (auto const& row : report.groups[g].rows)
+        if (row.population == population) count.add(row);
+      cells.push_back(count.runs > 0 ? count.text() : "-");
+    }
+  }
+  return table;
 }
 
 inline constexpr char const* finding_words[] = {"", "better", "worse"};
@@ -296,6 +320,7 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
       tables.push_back(std::move(table));
     };
     add(detail::measure_table(report, set, shares, "outcomes"));
+    if (auto table = detail::population_table(report, set); !table.rows.empty()) add(std::move(table));
     add(detail::measure_table(report, set, rules, "violations"));
     tables.back().note = "Shares of the scenarios, the smallest as counts; in brackets: 95 % intervals [%] (Wilson).";
     for (auto const g : set)

@@ -16,6 +16,7 @@ struct ResultGroup {
     std::uint64_t seed = 0;
     RunResult result{};
     RunTimes times{};
+    std::string population{};  ///< see `TrafficPopulation`
   };
 
   std::uint64_t set_hash = 0;

@@ -21,7 +21,7 @@ struct sqlite3_stmt;
 ///   behaviors  one row a behaviour with its parameters: behavior, parameters_hash, parameters, command (what runs
 ///              it, without the set)
 ///   results    one row a scenario and behaviour: the key (set_hash, scenario, behavior, parameters_hash, version), the
-///              scenario's seed, the fields of `RunResult`, and the run that brought it
+///              scenario's seed and population, the fields of `RunResult`, and the run that brought it
 ///   times      the same key, and the fields of `RunTimes`
 ///
 /// Hashes are texts of 16 hexadecimal digits. Everything in `results` but `run` is the same however often, in whatever
@@ -46,7 +46,8 @@ struct ResultRow {
   std::uint64_t seed = 0;
   RunResult result;
   RunTimes times{};
-  std::int64_t run = 0;  ///< the call of the runner that brought it; `ResultStore::add` sets the current one
+  std::int64_t run = 0;      ///< the call of the runner that brought it; `ResultStore::add` sets the current one
+  std::string population{};  ///< of the scenario, see `TrafficPopulation`
 };
 
 /// A database cannot be opened, read or written, or has tables of another program.

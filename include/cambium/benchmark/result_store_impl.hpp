@@ -186,7 +186,7 @@ CAMBIUM_COLD void ResultStore::add(ResultRow const& row) {
   if (!in_transaction_) execute("BEGIN");
   in_transaction_ = true;
   int at = detail::sql::bind_key(add_result_.get(), row.key);
-  at = detail::sql::bind_values(add_result_.get(), at, std::to_string(row.seed), run_);
+  at = detail::sql::bind_values(add_result_.get(), at, std::to_string(row.seed), run_, row.population);
   detail::sql::bind_fields(add_result_.get(), at, type_info<RunResult>(), &row.result);
   step(add_result_.get());
   at = detail::sql::bind_key(add_times_.get(), row.key);
@@ -201,7 +201,7 @@ CAMBIUM_COLD void ResultStore::commit() {
 
 CAMBIUM_COLD void ResultStore::for_each(std::function<void(ResultRow const&)> const& f) {
   auto statement = prepare(
-      "SELECT " + std::string(detail::sql::key_columns) + "seed, run, " +
+      "SELECT " + std::string(detail::sql::key_columns) + "seed, run, population, " +
       detail::sql::columns(type_info<RunResult>(), false) + ", " + detail::sql::columns(type_info<RunTimes>(), false) +
       " FROM results LEFT JOIN times USING(set_hash, scenario, behavior, parameters_hash, version) ORDER BY "
       "set_hash, behavior, parameters_hash, version, scenario");
@@ -212,7 +212,8 @@ CAMBIUM_COLD void ResultStore::for_each(std::function<void(ResultRow const&)> co
                detail::sql::text(statement.get(), 4)};
     row.seed = std::strtoull(detail::sql::text(statement.get(), 5).c_str(), nullptr, 10);
     row.run = sqlite3_column_int64(statement.get(), 6);
-    int at = 7;
+    row.population = detail::sql::text(statement.get(), 7);
+    int at = 8;
     detail::sql::read_fields(statement.get(), at, type_info<RunResult>(), &row.result);
     detail::sql::read_fields(statement.get(), at, type_info<RunTimes>(), &row.times);
     f(row);
@@ -293,14 +294,14 @@ CAMBIUM_COLD ResultStore::ResultStore(std::filesystem::path const& file, Databas
       "set_hash TEXT NOT NULL, scenario INTEGER NOT NULL, behavior TEXT NOT NULL, parameters_hash TEXT NOT NULL, "
       "version TEXT NOT NULL, ";
   std::string const primary = ", PRIMARY KEY(set_hash, behavior, parameters_hash, version, scenario)) WITHOUT ROWID";
-  execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " +
+  execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, population TEXT, " +
           detail::sql::columns(type_info<RunResult>(), true) + primary);
   execute("CREATE TABLE IF NOT EXISTS times(" + key + detail::sql::columns(type_info<RunTimes>(), true) + primary);
   add_missing_columns();
   execute("COMMIT");
-  add_result_ = prepare("INSERT OR REPLACE INTO results(" + std::string(detail::sql::key_columns) + "seed, run, " +
-                        detail::sql::columns(type_info<RunResult>(), false) + ") VALUES(" +
-                        detail::sql::marks(7 + type_info<RunResult>().fields().size()) + ")");
+  add_result_ = prepare("INSERT OR REPLACE INTO results(" + std::string(detail::sql::key_columns) +
+                        "seed, run, population, " + detail::sql::columns(type_info<RunResult>(), false) + ") VALUES(" +
+                        detail::sql::marks(8 + type_info<RunResult>().fields().size()) + ")");
   add_times_ = prepare("INSERT OR REPLACE INTO times(" + std::string(detail::sql::key_columns) +
                        detail::sql::columns(type_info<RunTimes>(), false) + ") VALUES(" +
                        detail::sql::marks(5 + type_info<RunTimes>().fields().size()) + ")");
@@ -359,6 +360,7 @@ CAMBIUM_COLD bool ResultStore::add_missing_column(std::string const& table, std:
 CAMBIUM_COLD void ResultStore::add_missing_columns() {
   add_missing_column("sets", "source TEXT");
   add_missing_column("behaviors", "command TEXT");
+  add_missing_column("results", "population TEXT");
   for (auto const& field : type_info<RunTimes>().fields()) add_missing_column("times", detail::sql::column_of(field));
   for (auto const& field : type_info<RunResult>().fields())
     if (add_missing_column("results", detail::sql::column_of(field)) && field.name == std::string_view("error_kind"))

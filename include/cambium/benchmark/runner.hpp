@@ -232,7 +232,12 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
     auto key = key_of(job);
     replays.take(outcome, replay_file_name(set.title, key.behavior, key.set_hash, key.parameters_hash, key.scenario),
                  job / count);
-    store.add({std::move(key), set.scenarios[job % count].seed, std::move(outcome.result), outcome.times});
+    auto const& scenario = set.scenarios[job % count];
+    store.add({.key = std::move(key),
+               .seed = scenario.seed,
+               .result = std::move(outcome.result),
+               .times = outcome.times,
+               .population = scenario.population});
     store.commit();
     if (options.progress) options.progress(++done, jobs.size());
   };

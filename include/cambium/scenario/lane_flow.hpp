@@ -27,6 +27,7 @@
 #include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/scenario/scenario.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
+#include "cambium/scenario/traffic_population.hpp"
 #include "cambium/world/agent_spec.hpp"
 
 namespace cambium {
@@ -54,17 +55,20 @@ struct DriverShare {
   typename World::Behavior behavior{};
   std::vector<DrawnParameter> drawn{};
   typename World::Observer observer{};
+  bool people = false;
 
   static constexpr char const* name = "driver_share";
   static constexpr auto parameters() {
     using P = DriverShare;
+    auto const who = parameter_list(
+        parameter("share", &P::share, "-", non_negative, "of the drivers, relative to the others'"),
+        choice("vehicle", &P::vehicle, "any|car|van|truck|bus|bicycle|pedestrian", "any: by the mix of the traffic"),
+        parameter("behavior", &P::behavior, "of these drivers"),
+        parameter("drawn", &P::drawn, "parameters of the behaviour that differ by driver"));
+    auto const people = parameter_list(parameter("people", &P::people, "they are as the recipe's populations are"));
     return join_parameters(
-        parameter_list(parameter("share", &P::share, "-", non_negative, "of the drivers, relative to the others'"),
-                       choice("vehicle", &P::vehicle, "any|car|van|truck|bus|bicycle|pedestrian",
-                              "any: by the mix of the traffic"),
-                       parameter("behavior", &P::behavior, "of these drivers"),
-                       parameter("drawn", &P::drawn, "parameters of the behaviour that differ by driver")),
-        detail::if_described(parameter("observer", &P::observer, "how they see the others")));
+        join_parameters(who, detail::if_described(parameter("observer", &P::observer, "how they see the others"))),
+        people);
   }
 };
 
@@ -264,7 +268,8 @@ template <class World>
 /// The driver of a vehicle as its flow says.
 template <class World>
 [[nodiscard]] typename World::AgentSpec drawn_agent(FlowPlan<World> const& plan, LaneVehicle const& vehicle,
-                                                    DriverShare<World> const* driver, RandomStream& random) {
+                                                    DriverShare<World> const* driver, RandomStream& random,
+                                                    TrafficPopulation population, RandomStream& people) {
   auto const pose = plan.lanes->center.pose(vehicle.s);
   typename World::AgentSpec spec{.position = pose.position(),
                                  .heading = pose.heading,
@@ -279,6 +284,9 @@ template <class World>
     auto behavior = driver->behavior;
     for (auto const& drawn : driver->drawn)
       std::visit([&](auto& model) { set_parameter(model, drawn.key, drawn.value(random)); }, behavior);
+    if (driver->people)
+      behavior = std::visit([&](auto const& given) { return driver_of<World>(population, given, people, plan.where); },
+                            behavior);
     spec.behavior = behavior;
     spec.observer = driver->observer;
   } else if constexpr (World::Behaviors::template contains<IdmClassic>) {
@@ -290,7 +298,8 @@ template <class World>
 /// Adds the vehicles of a flow that have room to the world and the scenario. Returns their ids.
 template <class World>
 std::vector<AgentId> draw_flow(FlowPlan<World> const& plan, InflowRules const& rules, RandomStream& random,
-                               World& world, Scenario<World>& scenario) {
+                               TrafficPopulation population, RandomStream& people, World& world,
+                               Scenario<World>& scenario) {
   auto const& flow = plan.flow;
   std::vector<double> shares;
   for (auto const& driver : flow.drivers) shares.push_back(driver.share);
@@ -303,7 +312,7 @@ std::vector<AgentId> draw_flow(FlowPlan<World> const& plan, InflowRules const& r
   });
   std::vector<AgentId> entered;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    auto spec = drawn_agent(plan, vehicles[i], drivers[i], random);
+    auto spec = drawn_agent(plan, vehicles[i], drivers[i], random, population, people);
     auto const id = world.add(spec);
     if (!has_room(world, id, rules)) {
       world.remove(id);
@@ -335,18 +344,19 @@ void choose_ego(LaneFlow<World> const& flow, std::vector<AgentId> const& entered
 }
 
 /// Scenario `number` of planned flows at `site`, a scenario without agents: the first of up to 100 draws in which
-/// each flow with an ego gets one.
+/// each flow with an ego gets one. Populations drive the same vehicles from the same places.
 template <class World>
 [[nodiscard]] Scenario<World> draw_flows(Scenario<World> const& site, std::vector<FlowPlan<World>> const& plans,
-                                         InflowRules const& rules, std::uint32_t number, std::string const& where) {
+                                         InflowRules const& rules, TrafficPopulation population, std::uint32_t number,
+                                         std::string const& where) {
   auto const empty = site.make_world();
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
     auto scenario = site;
     auto world = empty;
-    RandomStream random(site.seed, number, attempt, 0x666c6f77);
+    RandomStream random(site.seed, number, attempt, 0x666c6f77), people(site.seed, number, attempt, 0x706f7075);
     bool is_complete = true;
     for (auto const& plan : plans) {
-      auto const entered = draw_flow(plan, rules, random, world, scenario);
+      auto const entered = draw_flow(plan, rules, random, population, people, world, scenario);
       choose_ego(plan.flow, entered, random, scenario);
       is_complete = is_complete && (plan.flow.ego == LaneFlow<World>::Ego::none || !entered.empty());
     }

@@ -19,6 +19,7 @@
 #include "cambium/scenario/merging_site.hpp"
 #include "cambium/scenario/scenario.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
+#include "cambium/scenario/traffic_population.hpp"
 
 namespace cambium {
 
@@ -39,6 +40,7 @@ struct ScenarioRecipe {
   std::vector<map::LightPlan> lights{};
   std::vector<geometry::Polygon> objects{};
   InflowRules room{.headway = 0.8};
+  std::vector<TrafficPopulation> populations{TrafficPopulation::as_given};
 
   static constexpr char const* name = "scenario_recipe";
   static constexpr auto parameters() {
@@ -57,7 +59,9 @@ struct ScenarioRecipe {
                        parameter("flows", &P::flows, "traffic from sources to sinks (lanes)"),
                        parameter("lights", &P::lights, "of the map's first traffic lights (lanes)"),
                        parameter("objects", &P::objects, "m", any_finite, "corners of static objects (lanes)"),
-                       parameter("room", &P::room, "that a vehicle needs; without, it is left out (lanes)"));
+                       parameter("room", &P::room, "that a vehicle needs; without, it is left out (lanes)"),
+                       choice("populations", &P::populations, population_names,
+                              "of the drivers that are people (lanes): all scenarios with each"));
     return join_parameters(what, how);
   }
 };
@@ -121,7 +125,12 @@ template <class World>
     throw ParameterError(where, problem.what());
   }
   auto const plans = detail::plan_flows(map, recipe.flows, where);
-  each([&](std::uint32_t number) { return detail::draw_flows(site, plans, recipe.room, number, where); });
+  if (recipe.populations.empty()) throw ParameterError(where, "has no populations", "leave them out, or name some");
+  for (auto const population : recipe.populations) {
+    auto const first = scenarios.size();
+    each([&](std::uint32_t number) { return detail::draw_flows(site, plans, recipe.room, population, number, where); });
+    for (auto i = first; i < scenarios.size(); ++i) scenarios[i].population = to_string(population);
+  }
   return scenarios;
 }
 

@@ -46,6 +46,7 @@ struct Scenario {
   std::vector<AgentId> controlled{};                    ///< agents that a benchmark drives, too, besides the ego
   std::string map_file{};                               ///< that `map` was read from; files name it
   std::string title{};                                  ///< for reports
+  std::string population{};                             ///< how the others drive, for reports (`TrafficPopulation`)
 
   static constexpr char const* name = "scenario";
   /// What a file holds of it.
@@ -59,7 +60,8 @@ struct Scenario {
         parameter("controlled", &P::controlled, "further agents that a benchmark drives"),
         parameter("lights", &P::lights, "of the map's first traffic lights; the others are off"),
         parameter("objects", &P::objects, "m", any_finite, "corners of static objects"),
-        parameter("agents", &P::agents, "in the order in which they enter"));
+        parameter("agents", &P::agents, "in the order in which they enter"),
+        parameter("population", &P::population, "how the others drive, for reports"));
   }
 
   /// A world with all agents in it. Throws `WorldError` if an agent or a light plan is invalid, if two agents have the
@@ -101,7 +103,8 @@ template <class OtherWorld, class WorldType, class ToBehavior>
                              .objects = scenario.objects,
                              .controlled = scenario.controlled,
                              .map_file = scenario.map_file,
-                             .title = scenario.title};
+                             .title = scenario.title,
+                             .population = scenario.population};
   other.agents.reserve(scenario.agents.size());
   for (auto const& spec : scenario.agents) {
     other.agents.push_back({.position = spec.position,

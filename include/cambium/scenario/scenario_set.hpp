@@ -103,6 +103,7 @@ struct ScenarioSet {
     plain.title.clear();
     for (auto& scenario : plain.scenarios) {
       scenario.title.clear();
+      scenario.population.clear();
       scenario.map_file.clear();
     }
     detail::Fnv1a<std::uint64_t> hash(hash_parameters(plain));
