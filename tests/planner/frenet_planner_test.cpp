@@ -1,6 +1,9 @@
 #include "cambium/planner/frenet/frenet_planner.hpp"
 
+#include <utility>
+
 #include "planner/planner_fixtures.hpp"
+#include "support/who_yields.hpp"
 
 using namespace planner_fixtures;
 
@@ -85,4 +88,63 @@ TEST_CASE("a course that is not finite is not valid, and another one is driven")
   drive(world, 10);
   CHECK(world.state(ego).speed == doctest::Approx(12.0));
   CHECK(drivable(planner.limits, {0.0, std::nan(""), 10.0, 0.0}, {}, 20.0) == FrenetVerdict::not_finite);
+}
+
+TEST_CASE("it stops at a red light and at a stop sign, and goes on at green and after its stop") {
+  for (auto const& [type, speed] : {std::pair{"1000001", 14.0}, {"1000001", 6.0}, {"206", 12.0}}) {
+    CAPTURE(type);
+    CAPTURE(speed);
+    auto const map = support::road_with_signal(type);
+    CandidateSim world(map);
+    bool const is_light = !map->lights().empty();
+    if (is_light) world.set_light(map->lights().front().id, {.cycle = 100, .green_begin = 30, .green_end = 90});
+    auto const id = world.add({.position = {100, -1.75}, .speed = speed, .behavior = Frenet{.desired_speed = speed}});
+    double const line = 200.0 - geometry::car().front;
+    double hardest = 0.0, stood = 0.0;
+    while (world.time() < 60.0) {
+      double const before = world.state(id).speed;
+      REQUIRE(world.step(0.1));
+      hardest = std::max(hardest, (before - world.state(id).speed) / 0.1);
+      if (world.state(id).speed < standing_speed) {
+        ++stood;
+        CHECK(world.state(id).x > line - 8.0);
+      }
+      if (is_light && world.time() < 30.0) CHECK(world.state(id).x < line);
+    }
+    CHECK(stood > 0.0);
+    CHECK(hardest < 4.0);
+    CHECK(world.state(id).x > 230.0);
+  }
+  // A light that has just turned yellow is passed where it could not stop.
+  auto const map = support::road_with_signal("1000001");
+  CandidateSim world(map);
+  world.set_light(map->lights().front().id, {.cycle = 100, .green_begin = -50, .green_end = 1, .yellow = 4});
+  auto const id = world.add({.position = {170, -1.75}, .speed = 15, .behavior = Frenet{}});
+  while (world.time() < 4.0) REQUIRE(world.step(0.1));
+  CHECK(world.state(id).x > 210.0);
+}
+
+TEST_CASE("it gives way to a vehicle that has the right of way, and goes on behind it") {
+  for (double const other_way : {14.0, 18.0, 22.0}) {
+    CAPTURE(other_way);
+    support::WhoYields const at;
+    CandidateSim world(at.map);
+    auto const add = [&](std::pair<LaneId, double> const& place, map::Route const& route, double speed,
+                         CandidateSim::Behavior const& behavior) {
+      auto const pose = at.map->lane(place.first).path.pose(place.second);
+      return world.add(
+          {.position = pose.position(), .heading = pose.heading, .speed = speed, .behavior = behavior, .route = route});
+    };
+    auto const own = add(at.own_place(20.0), at.own, 5.0, Frenet{.desired_speed = 8.0});
+    auto const other = add(at.other_place(other_way), at.other, 5.5, ConstantAcceleration{});
+    while (world.time() < 20.0 && world.status(own) == AgentStatus::driving) {
+      REQUIRE(world.step(0.1));
+      bool const is_past = world.status(other) != AgentStatus::driving ||
+                           world.record(other).lane.s > at.map->lane(at.other.lanes[0]).length() + at.zone.other_end;
+      if (!is_past) CHECK(world.record(own).lane.s < at.zone.begin);
+      REQUIRE_FALSE(Collision{}(world, world.slot_of(own)));
+    }
+    bool const is_through = world.status(own) != AgentStatus::driving || world.record(own).lane.s > at.zone.end;
+    CHECK(is_through);
+  }
 }

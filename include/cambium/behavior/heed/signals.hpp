@@ -64,6 +64,14 @@ struct Signals {
     if (std::isfinite(stop.distance)) limits.stop_within(stop.distance, comfortable, dt);
   }
 
+  /// How far [m] an agent may drive before signals within `look_ahead` [m] that stop it, for planners; infinite without
+  /// such. O(signals).
+  template <class View>
+  [[nodiscard]] double free_way(View const& view, Memory& memory, double look_ahead) const {
+    double const front = view.place().s + view.shape().front, speed = std::max(0.0, view.state().speed);
+    return stop_at(view, front, speed, 0.0, look_ahead, memory.stopped_at).distance;
+  }
+
  private:
   /// How far it may drive before signals that stop it.
   struct Stop {

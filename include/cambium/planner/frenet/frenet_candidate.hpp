@@ -76,13 +76,23 @@ enum class FrenetVerdict : std::uint8_t {
   curvature,
   gap,
   road,
-  collision
+  collision,
+  signal  ///< it passes the line of a light or a stop sign
 };
 
 /// What a candidate failed by, in words.
 [[nodiscard]] constexpr char const* to_string(FrenetVerdict verdict) {
-  constexpr char const* names[] = {"unchecked",    "valid",     "not finite", "reverses", "too fast",
-                                   "acceleration", "curvature", "gap",        "off road", "collision"};
+  constexpr char const* names[] = {"unchecked",
+                                   "valid",
+                                   "not finite",
+                                   "reverses",
+                                   "too fast",
+                                   "acceleration",
+                                   "curvature",
+                                   "gap",
+                                   "off road",
+                                   "collision",
+                                   "red light or stop sign"};
   return names[static_cast<std::size_t>(verdict)];
 }
 

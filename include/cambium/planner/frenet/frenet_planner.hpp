@@ -5,15 +5,20 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 #include <boost/container/static_vector.hpp>
 
+#include "cambium/behavior/driver/limits.hpp"
+#include "cambium/behavior/heed/conflicts.hpp"
+#include "cambium/behavior/heed/signals.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/law/lane_reach.hpp"
+#include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/stable_sort.hpp"
@@ -26,19 +31,24 @@
 
 namespace cambium {
 
-/// Acceleration and curvature where the last course has taken the vehicle, so that the next one continues smoothly.
+/// Acceleration and curvature where the last course has taken the vehicle, so that the next one continues smoothly, and
+/// what it knows of signals and junctions.
 struct FrenetMemory {
   float acceleration = 0.0f;  ///< [m/s^2]
   float curvature = 0.0f;     ///< [1/m]
+  Signals::Memory signals{};
+  Conflicts::Memory conflicts{};
 
   void fell_short(double, bool left_course) {
-    if (left_course) *this = {};
+    if (left_course) acceleration = curvature = 0.0f;
   }
   static constexpr char const* name = "frenet_memory";
   static constexpr auto parameters() {
     using P = FrenetMemory;
     return parameter_list(parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "at the start"),
-                          parameter("curvature", &P::curvature, "1/m", any_finite, "likewise"));
+                          parameter("curvature", &P::curvature, "1/m", any_finite, "likewise"),
+                          parameter("signals", &P::signals, "the stop sign at which it has stopped"),
+                          parameter("conflicts", &P::conflicts, "who came before it, and how long it has waited"));
   }
 
   friend bool operator==(FrenetMemory const&, FrenetMemory const&) = default;
@@ -46,10 +56,11 @@ struct FrenetMemory {
 
 /// Plans by sampling courses in the Frenet frames of its lane and the lanes beside it. A course is a quintic polynomial
 /// across the lane and a quartic or quintic one along it, to one of several speeds or to a place behind the leader,
-/// over one of several durations. The planner drives the cheapest course that is drivable, stays on the road and keeps
-/// clear of the others, whose motion it predicts once as `Others`. If there is none, it brakes. `PredictionWorld` must
-/// have `Others` in its behaviour set. With own `terms`, all courses are checked, and the sum of the terms over a valid
-/// course is deducted from its cost.
+/// over one of several durations. The planner drives the cheapest course that is drivable, stays on the road, stops
+/// where signals (`Signals`) and the right of way (`Conflicts`) ask for it, and keeps clear of the others, whose motion
+/// it predicts once as `Others`. If there is none, it brakes. `PredictionWorld` must have `Others` in its behaviour
+/// set. With own `terms`, all courses are checked, and the sum of the terms over a valid course is deducted from its
+/// cost.
 ///
 /// The candidates of its report are the courses, cheapest first without `terms`; a score is a negative cost. In the
 /// frames of the report's course, ego's memory is that of the start.
@@ -69,6 +80,7 @@ struct FrenetPlanner {
     std::vector<Slot> to_avoid;                     ///< agents that ego has to keep clear of, see `agents_to_avoid`
     std::vector<FrenetTarget> targets;
     typename World::FrameType frame;
+    double free_way{};  ///< to where it has to stop for a signal or another's right of way [m]
 
     /// Steps the world for `time` [s] in steps of `length` [s].
     void predict_others(double time, double length) {
@@ -119,7 +131,10 @@ struct FrenetPlanner {
   double comfortable_deceleration = 2.0;
   Budget budget{};
   Own terms{};
+  Signals signals{};
+  Conflicts conflicts{};
 
+  static constexpr bool heeds_conflicts = true;
   static constexpr char const* name = "frenet_planner";
   static constexpr char const* summary =
       "samples quintic courses in the Frenet frames of its lane and the lanes beside it, and drives the cheapest valid "
@@ -150,7 +165,9 @@ struct FrenetPlanner {
         parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.1, 20},
                   "with which it comes to the end of a lane"),
         parameter("budget", &P::budget, "how many courses are checked, the cheapest first"),
-        parameter("terms", &P::terms, "evaluators whose sum over a course is deducted from its cost"));
+        parameter("terms", &P::terms, "evaluators whose sum over a course is deducted from its cost"),
+        parameter("signals", &P::signals, "how it stops at lights and stop signs"),
+        parameter("conflicts", &P::conflicts, "how it gives way"));
   }
 
   void check(std::string const& where) const {
@@ -177,6 +194,8 @@ struct FrenetPlanner {
                                       Budget& clock) const {
     if (!workspace.predict(view, others, others)) return SearchProblem::not_in_world;
     workspace.predict_others(horizon, step);
+    auto known = memory;
+    workspace.free_way = free_way(view, known, step);
     auto& candidates = workspace.candidates;
     auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
@@ -202,8 +221,10 @@ struct FrenetPlanner {
 
   template <class View>
   [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, double dt, Workspace const& workspace) const {
+    static_cast<void>(free_way(view, memory, dt));  // remembers where it has waited
     if (!workspace.chosen) {
-      memory = {static_cast<float>(view.state().speed > 0.0 ? limits.lowest_acceleration : 0.0), 0.0f};
+      memory.acceleration = static_cast<float>(view.state().speed > 0.0 ? limits.lowest_acceleration : 0.0);
+      memory.curvature = 0.0f;
       return brake(view, dt);
     }
     auto const& candidate = workspace.candidates[*workspace.chosen];
@@ -212,7 +233,8 @@ struct FrenetPlanner {
     for (int i = 1; i <= parts; ++i) {
       auto const driven = state_at(view, candidate, dt * i / parts);
       plan.trajectory.push_back(driven.state);
-      memory = {static_cast<float>(driven.course.acceleration), static_cast<float>(driven.course.curvature)};
+      memory.acceleration = static_cast<float>(driven.course.acceleration);
+      memory.curvature = static_cast<float>(driven.course.curvature);
     }
     plan.action.acceleration = (plan.trajectory.front().speed - view.state().speed) * parts / dt;
     return plan;
@@ -241,6 +263,7 @@ struct FrenetPlanner {
   }
 
  private:
+  static constexpr double look_ahead = 150.0;  ///< for signals [m]
   static constexpr bool has_terms = !std::is_same_v<Own, Terms<>>;
 
   /// A state on a course, with its motion along the course and in the Frenet frame.
@@ -250,6 +273,21 @@ struct FrenetPlanner {
     CourseMotion<double> course;
     FrenetMotion<double> frenet;
   };
+
+  /// How far it may drive before it has to stop by the rules [m].
+  template <class View>
+  [[nodiscard]] double free_way(View const& view, Memory& memory, double dt) const {
+    Idm const law{.desired_speed = desired_speed,
+                  .time_headway = time_headway,
+                  .minimum_gap = minimum_gap,
+                  .comfortable_deceleration = comfortable_deceleration,
+                  .lowest_acceleration = limits.lowest_acceleration};
+    Limits<Idm> rules(law, std::max(0.0, view.state().speed), desired_speed);
+    double const signal = signals.free_way(view, memory.signals, look_ahead);
+    rules.is_at_light = std::isfinite(signal) && view.state().speed < standing_speed;
+    conflicts.heed(view, memory.conflicts, rules, dt);
+    return std::max(0.0, std::min(signal, rules.place_to_wait.distance));
+  }
 
   /// The plan for the next `dt` [s] if no course is valid: it brakes and returns to the middle of its lane.
   template <class View>
@@ -279,6 +317,10 @@ struct FrenetPlanner {
       if (!corridor.reaches_destination)
         fastest = std::min(wanted, std::sqrt(2.0 * comfortable_deceleration * std::max(0.0, stop - at.s)));
     }
+    if (at.s + workspace.free_way < stop) {
+      stop = at.s + workspace.free_way;
+      fastest = std::min(fastest, std::sqrt(2.0 * comfortable_deceleration * workspace.free_way));
+    }
     for (double const duration : durations) {
       set_targets(view, number, at, fastest, stop, duration, workspace);
       for (auto const& target : workspace.targets)
@@ -291,6 +333,13 @@ struct FrenetPlanner {
     }
   }
 
+  /// Behind whom it would drive on a corridor. Those that merge in a junction are no leaders: where they are, and where
+  /// they will be, counts.
+  template <class View>
+  [[nodiscard]] static std::optional<RoadUser> leader_of(View const& view, CorridorId number) {
+    return view.ahead(view.place(number), {.merging = Merging::by_rule});
+  }
+
   /// Sets the targets of courses of `duration` [s]: speeds up to `fastest` [m/s], a place behind the leader, and `stop`
   /// [m] if it is finite.
   template <class View>
@@ -300,8 +349,7 @@ struct FrenetPlanner {
     targets.clear();
     for (double const share : speed_shares)
       targets.push_back({std::numeric_limits<double>::infinity(), share * fastest});
-    if (auto const leader = view.ahead(view.place(number)))
-      targets.push_back(behind(workspace, *leader, at.s, duration));
+    if (auto const leader = leader_of(view, number)) targets.push_back(behind(workspace, *leader, at.s, duration));
     if (std::isfinite(stop)) targets.push_back({stop, 0.0});
   }
 
@@ -342,12 +390,15 @@ struct FrenetPlanner {
     if (!std::isfinite(candidate.cost)) return FrenetVerdict::not_finite;
     if (candidate.kind == FrenetCandidate::Kind::keep_speed && comes_too_near(view, candidate, workspace))
       return FrenetVerdict::gap;
+    constexpr double rounding = 0.1;  // [m]
+    double const line = view.place(candidate.corridor).s + workspace.free_way + rounding;
     auto record = workspace.frames[0].agents[workspace.ego];
     double const fastest = std::max(view.state().speed, 1.1 * desired_speed) + 0.1;
     for (std::size_t k = 1; k < workspace.frames.size(); ++k) {
       auto const driven = state_at(view, candidate, static_cast<double>(k) * step);
       auto const verdict = drivable(limits, driven.course, driven.frenet, fastest);
       if (verdict != FrenetVerdict::valid) return verdict;
+      if (driven.frenet.s > line) return FrenetVerdict::signal;
       record = driven_to(*workspace.world, workspace.ego, record, driven.state);
       if (record.status == AgentStatus::off_route) return FrenetVerdict::road;
       if (record.status == AgentStatus::driving &&
@@ -384,7 +435,7 @@ struct FrenetPlanner {
   template <class View>
   [[nodiscard]] bool comes_too_near(View const& view, FrenetCandidate const& candidate,
                                     Workspace const& workspace) const {
-    auto const leader = view.ahead(view.place(candidate.corridor));
+    auto const leader = leader_of(view, candidate.corridor);
     if (!leader) return false;
     double const s = view.place(candidate.corridor).s;
     if (candidate.at(horizon).s <= behind(workspace, *leader, s, horizon).position) return false;
