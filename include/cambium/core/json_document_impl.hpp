@@ -106,7 +106,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
   std::string_view text_;
   std::string const& where_;
   JsonValue root_;
-  std::vector<std::string_view> names_;  ///< of the members of an object that ends
+  std::vector<std::string_view> names_;  ///< scratch of `end_object`
   std::vector<JsonValue*> open_;  ///< from the root to the current object or list; parents do not move while open
 };
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -45,19 +44,24 @@ template <class World, class Given>
                        : population == P::aggressive ? presets::aggressive_temperament()
                                                      : presets::Temperament{};
     auto const one = usual.drawn_around(random);
-    auto driver = one.of(given);
-    driver.law.desired_speed = given.law.desired_speed * one.speed_factor;
-    if (population != P::inattentive) return driver;
+    double const speed = given.law.desired_speed * one.speed_factor;
+    if (population != P::inattentive) {
+      auto driver = one.of(given);
+      driver.law.desired_speed = speed;
+      return driver;
+    }
     using Human = HumanDriver<Given>;
     if constexpr (World::Behaviors::template contains<Human>) {
       auto const around = [&](double usual_value) { return usual_value * (0.7 + 0.6 * uniform01(random)); };
-      Human human{.nominal = driver};
-      human.reaction_time = std::min(around(0.8), 0.5 * driver.law.time_headway);
+      Human human{.nominal = given};
+      human.reaction_time = around(0.8);
       human.gap_error = around(human.gap_error);
       human.rate_error = around(human.rate_error);
       human.attentive = around(human.attentive);
       human.looks_away = around(1.0);
       human.noise = around(human.noise);
+      human = one.of(human);
+      human.nominal.law.desired_speed = speed;
       return human;
     } else {
       throw ParameterError(where, std::string("needs HumanDriver of ") + Given::name + ", which the program lacks",

@@ -77,7 +77,7 @@ enum class FrenetVerdict : std::uint8_t {
   gap,
   road,
   collision,
-  signal  ///< it passes the line of a light or a stop sign
+  stop  ///< it passes a place where it has to stop by the rules
 };
 
 /// What a candidate failed by, in words.
@@ -92,7 +92,7 @@ enum class FrenetVerdict : std::uint8_t {
                                    "gap",
                                    "off road",
                                    "collision",
-                                   "red light or stop sign"};
+                                   "red light, stop sign or right of way"};
   return names[static_cast<std::size_t>(verdict)];
 }
 

@@ -398,7 +398,7 @@ struct FrenetPlanner {
       auto const driven = state_at(view, candidate, static_cast<double>(k) * step);
       auto const verdict = drivable(limits, driven.course, driven.frenet, fastest);
       if (verdict != FrenetVerdict::valid) return verdict;
-      if (driven.frenet.s > line) return FrenetVerdict::signal;
+      if (driven.frenet.s > line) return FrenetVerdict::stop;
       record = driven_to(*workspace.world, workspace.ego, record, driven.state);
       if (record.status == AgentStatus::off_route) return FrenetVerdict::road;
       if (record.status == AgentStatus::driving &&
