@@ -63,7 +63,7 @@ TEST_CASE("in a roundabout it does not wait for those who wait for it") {
   CandidateSim world(support::own_map("roundabout.xodr"));
   ReachLane const west{world.map().nearest_lane({-60.0, 2.0, 3.14})->lane};
   world.add({.position = {60.0, 1.75}, .heading = 3.14, .speed = 7.0, .behavior = Proposal{}, .goal = west});
-  world.add({.position = {-2.8, 35.0}, .heading = -1.57, .behavior = ConstantAcceleration{}});
+  world.add({.position = {-2.8, 37.0}, .heading = -1.57, .behavior = ConstantAcceleration{}});
   drive(world, 100);
   CHECK(world.state(ego).x < -10.0);
 }

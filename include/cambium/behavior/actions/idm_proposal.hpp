@@ -6,6 +6,7 @@
 #include "cambium/behavior/driver/heeding.hpp"
 #include "cambium/behavior/driver/limits.hpp"
 #include "cambium/behavior/heed/bends.hpp"
+#include "cambium/behavior/heed/conflicts.hpp"
 #include "cambium/behavior/heed/pedestrians.hpp"
 #include "cambium/behavior/heed/signals.hpp"
 #include "cambium/behavior/lateral/change_lanes.hpp"
@@ -60,7 +61,7 @@ struct ChangeTowards {
 /// Follows the next vehicle in its path by `Law`, at a share of its desired speed and an offset from the middle of its
 /// lane, or changes into a lane beside it as soon as that is safe (see `ChangeLanes`). Share, offset and lane are its
 /// memory, which a planner sets to try several proposals (see `ProposalPlanner`). It passes road users in its lane that
-/// leave enough room, and heeds `Heeds`. In a junction it gives way to nobody: the planner judges that.
+/// leave enough room, and heeds `Heeds`.
 template <CarFollowingLaw Law, class... Heeds>
 struct BasicProposal {
   using Lateral = ChangeLanes<ChangeTowards>;
@@ -91,10 +92,11 @@ struct BasicProposal {
   [[no_unique_address]] Heeding<Heeds...> heeds{};
   double clearance = 0.2;
 
+  static constexpr bool heeds_conflicts = (detail::heeds_conflicts<Heeds>() || ...);
   static constexpr char const* name = "idm_proposal";
   static constexpr char const* summary =
       "follows at a share of the desired speed, and at an offset from the lane's middle or into a lane beside it, as a "
-      "planner sets; passes road users that leave room; heeds bends and signals";
+      "planner sets; passes road users that leave room; heeds bends, signals and the right of way";
   static constexpr char const* source = "Treiber 2000; after Dauner et al. 2023";
   static constexpr auto parameters() {
     using P = BasicProposal;
@@ -111,6 +113,7 @@ struct BasicProposal {
     double const desired =
         std::max(0.1, static_cast<double>(memory.speed_share) * heeds.desired_speed(law, view, speed));
     Limits<Law> limits(law, speed, desired, heeds.merging(view, lateral.keep.merging));
+    limits.gives_way = heeds_conflicts;
     bool const is_there = memory.towards == none<CorridorId> || memory.towards == view.place().corridor;
     if (memory.lateral.change.active() || !is_there) {
       auto changing = lateral;
@@ -137,8 +140,8 @@ struct BasicProposal {
   }
 };
 
-/// By IDM, with bends, lights and those who step onto the road.
-using IdmProposal = BasicProposal<Idm, Bends, Signals, Pedestrians>;
+/// By IDM, with bends, lights, those who step onto the road, and the right of way.
+using IdmProposal = BasicProposal<Idm, Bends, Signals, Pedestrians, Conflicts>;
 static_assert(BehaviorModel<IdmProposal>);
 
 }  // namespace cambium
