@@ -449,6 +449,25 @@ TEST_CASE("drivers go around a standing object even if the other lane is busy") 
   }
 }
 
+TEST_CASE("a driver who starts close behind a parked vehicle, or two, pulls out before, amid or after those who come") {
+  for (double const gap : {4.5, 8.0, 20.0})
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      cb::RandomStream random(seed, 0, 0);
+      Sim world(support::straight_road(2, 600.0), {.seed = seed});
+      auto const driver = world.add({.position = {100.0, -5.25}, .behavior = mobil(13.0)});
+      auto const van = cb::geometry::van();
+      double const at = 100.0 + cb::geometry::car().front + gap + van.rear;
+      for (int i = 0; i < (seed % 2 == 0 ? 2 : 1); ++i)
+        world.add({.position = {at + 20.0 * i, -5.25}, .shape = van, .behavior = cb::ConstantAcceleration{}});
+      for (double s = 80.0; s > 0.0; s -= 12.0 + 20.0 * cb::uniform01(random))
+        add(world, 1, s, 10.0, cb::IdmClassic{.law = {.desired_speed = 10.0}});
+      drive_safely(world, 250);
+      CAPTURE(gap);
+      CAPTURE(seed);
+      CHECK(world.state(driver).x > at + 50.0);
+    }
+}
+
 TEST_CASE("a driver stops before the end of a lane without its goal, and changes as soon as it can") {
   for (double const spacing : {9.0, 14.0, 60.0}) {
     auto const map = support::straight_road(2, 600.0);

@@ -14,9 +14,10 @@ namespace cambium {
 
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
-/// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap. Close
-/// behind a road user that stands, it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`), unless
-/// pedestrians are in the world. The macro actions slow down for bends and stop at lights, whatever the driver does.
+/// without finding out by itself how that is done. A change that leaves the lane is completed first, keeping the gap.
+/// Close behind a road user that stands, a driver that does not change lanes by itself keeps a gap that leaves room for
+/// a change (`LaneChangeCourse::may_pass`), unless pedestrians are in the world. The macro actions slow down for bends
+/// and stop at lights, whatever the driver does.
 template <BehaviorModel Driver>
 struct DriverActions {
   using Macro = BasicMacroActions<Idm, Bends, Signals>;
@@ -67,23 +68,31 @@ struct DriverActions {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    bool const is_driver = memory.drives && !memory.macro.change.active() && !needs_room(view);
+    bool const is_driver = memory.drives && (driver_changes_lanes ? !leaves_lane(view, memory.macro.change)
+                                                                  : !memory.macro.change.active() && !needs_room(view));
     hand_over(memory, is_driver);
     if (is_driver) return driver.plan(view, memory.driver, dt);
     return memory.drives ? macro.keep_gap(view, memory.macro, dt) : macro.plan(view, memory.macro, dt);
   }
 
  private:
+  static constexpr bool driver_changes_lanes = requires(MemoryOf<Driver> memory) { memory.lateral.change; };
+
   /// Gives the lane change under way to whoever drives next: there is only one, and the other one's would be stale when
   /// it drives again.
   static void hand_over(Memory& memory, bool to_driver) {
-    if constexpr (requires { memory.driver.lateral.change; }) {
+    if constexpr (driver_changes_lanes) {
       auto &of_macro = memory.macro.change, &of_driver = memory.driver.lateral.change;
       auto &from = to_driver ? of_macro : of_driver, &to = to_driver ? of_driver : of_macro;
       if (from == LaneChange{}) return;
       if (!to.active()) to = from;
       from = {};
     }
+  }
+
+  template <class View>
+  [[nodiscard]] static bool leaves_lane(View const& view, LaneChange const& change) {
+    return change.active() && change.target != view.place().corridor;
   }
 
   /// Whether the next road user in the lane is one to pass, and so near that the driver may have to brake for it.

@@ -191,6 +191,8 @@ struct BasicMacroActions {
         memory.change = is_back ? course.back(side, view.shape(), speed, view.place().lateral, bend)
                                 : course.begin(side, view.shape(), speed);
         memory.change.bend = bend;
+        if (auto const next = view.ahead(); next && !is_back && next->speed < detail::at_rest_below)
+          memory.change = course.around(view, memory.change, *next).value_or(memory.change);
       }
     }
     memory.is_new = false;
@@ -218,7 +220,9 @@ struct BasicMacroActions {
     auto const& change = memory.change;
     Limits<Law> limits(law, speed, heeds.desired_speed(law, view, speed), heeds.merging(view, Merging::counts));
     if (keeps_gap) {
-      KeepLane{}.heed_next(view, limits);
+      auto const leader = change.active() ? view.ahead({.merging = limits.merging}) : std::nullopt;
+      if (!leader || leader->speed >= detail::at_rest_below || !course.leads_around(view, change, *leader))
+        KeepLane{}.heed_next(view, limits);
       if (change.active() && change.target != view.place().corridor) {
         auto const there = view.place(change.target);
         if (auto const next = view.ahead(there, {.merging = limits.merging}))
@@ -231,7 +235,8 @@ struct BasicMacroActions {
       auto const allowed = limits.motion(dt);
       if (allowed.speed < motion.speed) motion = allowed;
     }
-    if (keeps_gap && !change.active())
+    bool const stays = !change.active() || change.target == view.place().corridor;
+    if (keeps_gap && stays)
       if (auto const next = view.ahead({.merging = limits.merging}))
         motion = course.leave_room(view, *next, motion, dt);
     return limits.within(motion, dt);

@@ -185,9 +185,12 @@ struct ChangeLanes {
     course.renew(memory.change, view.shape(), speed);
     if (memory.lane.adrift) [[unlikely]]
       enter(view, memory);
+    // On its way back, but without room to reach the middle first: it must leave this lane, too, or goes around the
+    // leader.
     if (memory.change.target == home && speed < standing_speed &&
-        distance_to_stop(view, view.place()) < limits.law().minimum_gap + 1)
-      memory.change = {};  // the vehicle must leave this lane, too, and has no room left to reach its middle first
+        (distance_to_stop(view, view.place()) < limits.law().minimum_gap + 1 ||
+         (leader && leader->speed < detail::at_rest_below)))
+      memory.change = {};
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, limits, memory.change)) abort(view, speed, memory);
       limits = while_changing(view, limits, leader, memory.change);
@@ -199,12 +202,13 @@ struct ChangeLanes {
       Choice const choice{view, limits, leader, end, may_change, *this};
       auto const target = rule(choice);
       if (may_change && is_beside(view, target) && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
-        auto const change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
-        if (!(limits.gives_way && enters_crossing(view, change))) {
-          memory.change = change;
+        std::optional change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
+        if (leader && leader->speed < detail::at_rest_below) change = course.around(view, *change, *leader);
+        if (change && !(limits.gives_way && enters_crossing(view, *change))) {
+          memory.change = *change;
           memory.rest = static_cast<float>(rest + course.duration);
           limits.forget_constraints();
-          limits = while_changing(view, limits, leader, change);
+          limits = while_changing(view, limits, leader, *change);
         }
       }
     }
@@ -294,8 +298,6 @@ struct ChangeLanes {
   }
 
   static constexpr double infinite = std::numeric_limits<double>::infinity();
-  /// A vehicle that changes lanes passes road users slower than this, which stand or hardly move [m/s].
-  static constexpr double passed_below = 0.5;
 
   /// Goes on with the change that the vehicle is in when it enters.
   template <class View>
@@ -341,7 +343,7 @@ struct ChangeLanes {
   CAMBIUM_NOINLINE void abort(View const& view, double speed, Memory& memory) const {
     constexpr std::uint32_t purpose = 0x4c43u;
     auto const& at = view.place();
-    float const bend = speed < passed_below ? 0.0f : memory.change.bend;
+    float const bend = speed < detail::at_rest_below ? 0.0f : memory.change.bend;
     auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, bend);
     if (!detail::stays_within_lane(view, back)) return;
     auto random = view.random(purpose);
@@ -423,15 +425,30 @@ struct ChangeLanes {
     return away > 0.0 ? most / (share * away) : infinite;
   }
 
-  /// Adds a leader in the lane of `place` that the vehicle stays in; before an object it leaves room to change.
+  /// Adds a leader in the lane of `place` that the vehicle stays in; where there is a lane beside (`has_side`), it
+  /// leaves room to change before an object, and before one that is parked.
   template <class View, class Limits>
   void add_leader(View const& view, Limits& limits, std::optional<RoadUser> const& leader, map::LanePlace const& place,
                   bool has_side) const {
     if (!leader) return;
-    double const room = is_object(*leader) && has_side ? detail::out_of_lane * course.least_length(view.shape()) : 0.0;
     auto constraint = detail::constraint_of<typename Limits::Response>(view, *leader, place);
-    constraint.gap -= room;
+    if (has_side && is_object(*leader))
+      constraint.gap -= detail::out_of_lane * course.least_length(view.shape());
+    else if (has_side && leader->speed < course.slow) [[unlikely]]
+      constraint.gap -= room_before(view, *leader, limits.law().minimum_gap);
     limits.heed(constraint);
+  }
+
+  /// Room [m] that a driver leaves before one that is parked, so that a tight change leads around it, as far as it can
+  /// stop for it with comfort.
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] double room_before(View const& view, RoadUser const& leader, double gap) const {
+    constexpr double share = 0.3, comfortable = 2.5;  // of the least length, [m/s^2]
+    double const speed = std::max(0.0, view.state().speed),
+                 spare = leader.gap - gap - speed * speed / (2.0 * comfortable);
+    if (spare <= 0.0 || !detail::is_parked(view, leader)) return 0.0;
+    return std::min(spare,
+                    share * course.least_length(view.shape()) * (1.0 - std::max(0.0, leader.speed) / course.slow));
   }
 
   /// `limits` with the vehicles that merge, and the next one in the own lane: not only the nearest of them all,
@@ -442,7 +459,7 @@ struct ChangeLanes {
                                                      Limits limits) const {
     view.each_ahead({.merging = limits.merging}, [&](RoadUser const& next) {
       if ((leader && next.agent == leader->agent && next.object == leader->object) ||
-          (leaves && next.speed < passed_below))
+          (leaves && next.speed < detail::at_rest_below))
         return;
       limits.heed(detail::constraint_of<typename Limits::Response>(view, next));
     });
@@ -475,7 +492,7 @@ struct ChangeLanes {
     auto const& piece = corridor.pieces[at.piece];
     double const left = change.left, around = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
     auto const is_passed = [&](RoadUser const& n, double until) {  // the course leads around it
-      return n.speed < passed_below && n.gap > until;
+      return n.speed < detail::at_rest_below && (n.gap > until || course.leads_around(view, change, n));
     };
     if (change.target == at.corridor) {
       add_leader(view, limits, leader, at, true);

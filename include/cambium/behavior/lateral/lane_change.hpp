@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/portable_math.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/shape.hpp"
 
 namespace cambium {
@@ -60,6 +64,9 @@ namespace detail {
 /// Share of a change after which the vehicle has left its old lane.
 inline constexpr double out_of_lane = 0.7;
 
+/// A road user slower than this stands or hardly moves [m/s]; own choice.
+inline constexpr double at_rest_below = 0.5;
+
 /// Extra length of a course for each metre that the vehicle's front is farther from its rear axle than a car's [-]. It
 /// keeps long vehicles from swinging out into the lane beyond, for lanes 3.5 m wide.
 inline constexpr double longer_by_front = 5.0;
@@ -81,6 +88,41 @@ CAMBIUM_NOINLINE [[nodiscard]] bool waits_at_line(View const& view, RoadUser con
          std::ranges::any_of(corridor.conflicts, [&](auto const& conflict) {
            return conflict.hull().end > near && conflict.first_hold() < far;
          });
+}
+
+/// Whether `user`, who stands in the own lane or is about to, has no reason to that shows, so that it is parked or has
+/// broken down: no line as in `waits_at_line`, no queue before it, and nobody off the lanes near. A user may be the own
+/// vehicle. O(agents off the lanes + agents within 60 m ahead of it in the lane).
+template <class View>
+CAMBIUM_NOINLINE [[nodiscard]] bool is_parked(View const& view, RoadUser const& user) {
+  constexpr double near = 30.0, far = 60.0;  // [m]
+  constexpr int most = 1;                    // parked ahead of it
+  if (waits_at_line(view, user)) return false;
+  int ahead = 0;
+  double const way = std::max(0.0, user.s - view.place().s);
+  view.off_lanes(way + near, [&](RoadUser const&) { ahead = most + 1; });
+  view.around(view.place(), way + far, [&](RoadUser const& other) {
+    if (other.s <= user.s || other.s > user.s + far || other.agent == user.agent) return;
+    ahead += other.speed >= at_rest_below && other.s < user.s + near ? most + 1 : 1;
+  });
+  return ahead <= most;
+}
+
+/// Free road [m] to one that is parked in the own lane and leaves no room to pass there, where there is a lane beside;
+/// infinite without one. O(1) but before one that stands.
+template <class View>
+[[nodiscard]] double free_until_parked(View const& view) {
+  constexpr double aside = 1.0, clearance = 0.3;  // [m]
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  auto const& at = view.place();
+  auto const& piece = view.corridor().pieces[at.piece];
+  if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return infinite;
+  auto const next = view.ahead({.merging = Merging::by_rule});
+  if (!next || next->speed >= at_rest_below) [[likely]]
+    return infinite;
+  for (double const offset : {0.0, -aside, aside})
+    if (leaves_room(view, at.corridor, *next, offset, clearance)) return infinite;
+  return is_parked(view, *next) ? std::max(0.0, next->gap) : infinite;
 }
 
 [[nodiscard]] constexpr double least_course_length(double of_car, geometry::Shape const& shape, double by_front) {
@@ -148,6 +190,49 @@ struct LaneChangeCourse {
     double const roomy = detail::least_course_length(minimum_length, shape, detail::longer_by_front_with_room);
     double const wanted = std::max(roomy, speed * duration);
     return {target, static_cast<float>(std::max(shortest, std::min(wanted, room))), 0.0f};
+  }
+
+  /// Whether a vehicle that drives `change` from its place keeps `air` [m] to `other`, a road user that stands. O(1).
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] bool leads_around(View const& view, LaneChange const& change, RoadUser const& other,
+                                                   double air = 0.1) const {
+    constexpr int samples = 16;
+    auto const at = view.place(change.target);
+    if (!(change.left > 0.0f) || std::abs(at.heading_error) > detail::most_aslant) return false;
+    auto const& corridor = view.road().corridors[change.target];
+    double const length = change.left, stretch = detail::stretch_beside(corridor, at, length);
+    LateralCourse<double> const start{at.lateral, stretch * portable::tan(at.heading_error), change.bend};
+    auto state = view.state();
+    for (int i = 1; i <= samples; ++i) {
+      double const along = length * i / samples;
+      auto const course = converge(start, length, along);
+      place_on_lane(corridor, at.s + along, course.offset, portable::atan(course.slope / stretch), at.segment, state);
+      auto box = geometry::box_of(view.shape(), state);
+      box.half_length += air;
+      box.half_width += air;
+      bool const touches = is_valid(other.agent)
+                               ? geometry::intersects(box, geometry::box_of(view.shape(other), view.state(other)))
+                               : geometry::intersects(box, view.outline(other));
+      if (touches) return false;
+    }
+    return true;
+  }
+
+  /// `change`, which begins, or the longest shorter one that leads around `other`, a road user that stands; nothing if
+  /// none does. At walking speed it may be as short as a vehicle can steer, the shorter the less it moves sideways.
+  /// O(1).
+  template <class View>
+  [[nodiscard]] std::optional<LaneChange> around(View const& view, LaneChange change, RoadUser const& other) const {
+    constexpr double tightest = 0.75, width = 3.5, shorter = 0.9;  // share of the least length for [m]; of the last one
+    constexpr double air = 0.2;                                    // [m] more than while it is under way
+    double const speed = std::max(0.0, view.state().speed), across = std::abs(view.place(change.target).lateral);
+    double const shortest = std::max(tightest * least_length(view.shape()) * std::sqrt(std::min(1.0, across / width)),
+                                     speed * std::min(shortest_duration, duration));
+    for (double length = change.left;; length = std::max(shortest, shorter * length)) {
+      change.left = static_cast<float>(length);
+      if (leads_around(view, change, other, air)) return change;
+      if (length <= shortest) return std::nullopt;
+    }
   }
 
   /// The change that the motion of a vehicle shows, such as when it enters or is set in the middle of one; not active
