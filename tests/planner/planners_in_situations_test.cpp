@@ -130,6 +130,19 @@ TEST_CASE_TEMPLATE("it stops behind a standing vehicle, or passes it in another 
   }
 }
 
+TEST_CASE_TEMPLATE("it pulls out from close behind a parked vehicle", Planner, STEADY_PLANNERS) {
+  for (std::uint64_t seed = 0; seed < support::runs(3); ++seed) {
+    CAPTURE(seed);
+    double const gap = 4.5 + 2.0 * static_cast<double>(seed), at = 30.0 + 3.6 + gap + 1.3;
+    auto const planner = quick<Planner>();
+    Sim world(support::straight_road(2, 600.0), {.seed = seed});
+    world.add({.position = {30.0, -5.25}, .behavior = planner});
+    world.add({.position = {at, -5.25}, .shape = geometry::van(), .behavior = ConstantAcceleration{0.0}});
+    auto const seen = drive<Planner>(seed, world, ego, planner, 30.0);
+    CHECK(seen.way > gap + 50.0);
+  }
+}
+
 TEST_CASE_TEMPLATE("it merges into traffic and gets to its goal", Planner, ALL_PLANNERS) {
   MergingSite const sites[] = {find_merging_site(support::own_map("merging.xodr")),
                                find_merging_site(support::own_map("lane_drop.xodr"))};

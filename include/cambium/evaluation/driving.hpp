@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/ids.hpp"
@@ -113,11 +114,11 @@ struct LaneOffset {
   }
 };
 
-/// How urgent a lane change is for the agent, because its lane ends or does not lead to its goal: 0 if it may stay, and
-/// growing to 1 over the last `horizon` [m] for each lane to cross, or over those that it drives in `time_horizon` [s]
-/// if these are more: the sixth power of the driven share of this way (see `lane_urgency`). As a term with a negative
-/// weight, it draws a planner into the lane of its exit long before the end of its prediction, and still lets it leave
-/// that lane to pass somebody if there is room to return.
+/// How urgent a lane change is for the agent, because its lane ends, does not lead to its goal, or is blocked by one
+/// that is parked: 0 if it may stay, and growing to 1 over the last `horizon` [m] for each lane to cross, or over those
+/// that it drives in `time_horizon` [s] if these are more: the sixth power of the driven share of this way (see
+/// `lane_urgency`). As a term with a negative weight, it draws a planner into the lane of its exit long before the end
+/// of its prediction, and still lets it leave that lane to pass somebody if there is room to return.
 struct LaneChangeUrgency {
   double horizon = 300.0;
   double time_horizon = 25.0;
@@ -140,9 +141,10 @@ struct LaneChangeUrgency {
   /// The same as if the agent of `view` were at a place in another lane.
   template <class View>
   [[nodiscard]] double at(View const& view, map::LanePlace const& place) const {
-    double const way = time_horizon * std::abs(view.state().speed);
-    auto const urgency = lane_urgency(view, place, std::max(horizon, way));
-    double const share = std::max({0.0, urgency.left, urgency.right});
+    double const way = std::max(horizon, time_horizon * std::abs(view.state().speed));
+    auto const urgency = lane_urgency(view, place, way);
+    double share = std::max({0.0, urgency.left, urgency.right});
+    if (place.corridor == view.place().corridor) share = std::max(share, 1.0 - detail::free_until_parked(view) / way);
     double const cube = share * share * share;
     return cube * cube;
   }

@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/core/constants.hpp"
 #include "cambium/core/error.hpp"
@@ -156,10 +157,20 @@ template <class World>
   return !ahead || ahead->gap > 5.0 + 4.0 * seen.state.speed;  // [m], [s]
 }
 
-/// Predicts that an agent keeps its speed if it is faster than `others` want to drive, drives steadily, or moves beside
-/// the lanes, as pedestrians do: nobody slows down or speeds up without a reason. On a lane, the speed is rounded to a
-/// whole m/s, so that small changes of speed do not change the prediction. `learns`: the planner learns headways, so an
-/// agent counts as steady only if nobody ahead hinders it; a follower's speed reveals the gap that it keeps. O(agents).
+/// Whether an agent stands in its lane, parked or broken down.
+template <class World>
+[[nodiscard]] bool is_parked(World& world, Slot slot) {
+  auto const& seen = world.frame().agents[slot];
+  if (seen.state.speed >= at_rest_below || !in_traffic(world, slot)) return false;
+  auto const view = world.observe(slot);
+  return is_parked(view, RoadUser{.agent = view.id(), .s = view.place().s, .front = view.shape().front});
+}
+
+/// Predicts that an agent keeps its speed if it is faster than `others` want to drive, drives steadily, is parked, or
+/// moves beside the lanes, as pedestrians do: nobody slows down or speeds up without a reason. On a lane, the speed is
+/// rounded to a whole m/s, so that small changes of speed do not change the prediction. `learns`: the planner learns
+/// headways, so an agent counts as steady only if nobody ahead hinders it; a follower's speed reveals the gap that it
+/// keeps. O(agents).
 template <class World, class Others>
 void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   auto* const desired = desired_speed_of(others);
@@ -168,11 +179,12 @@ void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   auto const range = range_at(type_info<Others>(), &others, desired);
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
-    bool const is_on_foot = is_beside_lanes(world, slot);
-    if (slot == ego ||
-        (!is_on_foot && seen.state.speed <= usual && !(learns ? likes_its_speed(world, slot) : is_steady(seen))))
+    if (slot == ego) continue;
+    bool const is_on_foot = is_beside_lanes(world, slot), stands = !is_on_foot && is_parked(world, slot);
+    if (!is_on_foot && !stands && seen.state.speed <= usual &&
+        !(learns ? likes_its_speed(world, slot) : is_steady(seen)))
       continue;
-    double const speed = is_on_foot ? seen.state.speed : std::max(1.0, std::round(seen.state.speed));
+    double const speed = is_on_foot ? seen.state.speed : stands ? 0.0 : std::max(1.0, std::round(seen.state.speed));
     *desired = std::clamp(speed, range.low, range.high);
     assume(world, slot, others);
   }

@@ -145,11 +145,12 @@ struct FrenetTarget {
 
 /// The course from `start` that reaches `target` at `offset` after `duration` [s], with its cost except that of the
 /// route. If either end is slower than `low_speed` [m/s], its offset depends on the distance (`by_way`), because a
-/// vehicle moves sideways only while it drives.
+/// vehicle moves sideways only while it drives: over the whole distance or, if `tight`, over as little as it can steer.
 [[nodiscard]] inline FrenetCandidate frenet_candidate(FrenetMotion<double> const& start, FrenetTarget const& target,
                                                       double offset, double duration, double desired_speed,
-                                                      double low_speed, FrenetCosts const& costs) {
-  constexpr double shortest_way = 10.0;  // [m] in which a vehicle can move sideways
+                                                      double low_speed, FrenetCosts const& costs, bool tight = false) {
+  constexpr double shortest_way = 10.0;            // [m] in which a vehicle can move sideways
+  constexpr double tight_way = 11.0, width = 3.5;  // [m] in which it can move that far sideways
   FrenetCandidate c;
   c.duration = duration;
   c.offset = offset;
@@ -164,6 +165,7 @@ struct FrenetTarget {
   auto const in_time = quintic(d, {offset, 0.0, 0.0}, duration);
   c.by_way = std::min(start.speed, target.speed) < low_speed;
   c.way = std::max(shortest_way, c.along.at(duration).position - start.s);
+  if (tight) c.way = std::min(c.way, tight_way * std::sqrt(std::abs(offset - start.offset) / width));
   c.across = c.by_way ? quintic({start.offset, start.slope, start.bend}, {offset, 0.0, 0.0}, c.way) : in_time;
   double const off = target.speed - desired_speed;
   c.cost = costs.lateral * (costs.jerk * in_time.squared_jerk(duration) + costs.offset * offset * offset) +

@@ -263,7 +263,8 @@ struct FrenetPlanner {
   }
 
  private:
-  static constexpr double look_ahead = 150.0;  ///< for signals [m]
+  static constexpr double look_ahead = 150.0;   ///< for signals [m]
+  static constexpr double least_to_turn = 1.0;  ///< sideways, for which it also tries to steer as hard as it can [m]
   static constexpr bool has_terms = !std::is_same_v<Own, Terms<>>;
 
   /// A state on a course, with its motion along the course and in the Frenet frame.
@@ -305,9 +306,15 @@ struct FrenetPlanner {
     CourseMotion<double> const now{at.heading_error, static_cast<double>(memory.curvature),
                                    std::max(0.0, view.state().speed), static_cast<double>(memory.acceleration)};
     auto const start = frenet_motion(now, at.s, at.lateral, {corridor.center.segments()[at.segment].curvature, 0.0});
-    int const lanes = view.has_goal() ? lanes_to_destination(view.road(), number, at.piece) : 0;
     double const end = lane_end(view, number, at.piece);
-    double const closeness = lanes > 0 ? std::clamp(1.0 - (end - at.s) / (lanes * route_horizon), 0.0, 1.0) : 0.0;
+    int lanes = view.has_goal() ? lanes_to_destination(view.road(), number, at.piece) : 0;
+    double way = end - at.s;
+    if (number == view.place().corridor)
+      if (double const free = detail::free_until_parked(view); std::isfinite(free)) {
+        lanes += 2;  // there and back
+        way = std::min(way, free);
+      }
+    double const closeness = lanes > 0 ? std::clamp(1.0 - way / (lanes * route_horizon), 0.0, 1.0) : 0.0;
     double const route = costs.route * lanes * (1.0 + costs.route_urgency * closeness);
     double const wanted = std::min(desired_speed, corridor.speed_limit_at(at.s));
     double fastest = wanted;
@@ -324,12 +331,16 @@ struct FrenetPlanner {
     for (double const duration : durations) {
       set_targets(view, number, at, fastest, stop, duration, workspace);
       for (auto const& target : workspace.targets)
-        for (double const offset : offsets) {
-          auto& c = workspace.candidates.emplace_back(
-              frenet_candidate(start, target, offset, duration, wanted, low_speed, costs));
-          c.corridor = number;
-          c.cost += route;
-        }
+        for (double const offset : offsets)
+          for (bool const tight : {false, true}) {
+            bool const turns =
+                std::min(start.speed, target.speed) < low_speed && std::abs(offset - start.offset) > least_to_turn;
+            if (tight && !turns) continue;
+            auto& c = workspace.candidates.emplace_back(
+                frenet_candidate(start, target, offset, duration, wanted, low_speed, costs, tight));
+            c.corridor = number;
+            c.cost += route;
+          }
     }
   }
 

@@ -310,16 +310,30 @@ struct PolicyTreePlanner {
     return cost;
   }
 
+  /// Whether a lane change under way leads around `front`, one that stands.
+  template <class View>
+  [[nodiscard]] static bool goes_around(View const& view, RoadUser const& front, Memory const& memory) {
+    if (front.speed >= detail::at_rest_below) return false;
+    auto const leads = [&](LaneChange const& change) {
+      return change.active() && LaneChangeCourse{}.leads_around(view, change, front);
+    };
+    if constexpr (requires { memory.driver.lateral.change; })
+      if (leads(memory.driver.lateral.change)) return true;
+    return leads(Semantic::macro(memory).change);
+  }
+
   /// Adds the cost of the present state, which stands for `share` of the horizon.
   void add_step(Workspace& workspace, AgentId id, double share, PolicyCost& cost) const {
-    auto const view = workspace.world->observe(id);
+    auto& world = *workspace.world;
+    auto const view = world.observe(id);
     double const speed = view.state().speed, desired = Semantic::macro(actions).law.desired_speed;
-    cost.efficiency += share * SpeedDeviation{desired}(*workspace.world, workspace.ego) / desired;
+    cost.efficiency += share * SpeedDeviation{desired}(world, workspace.ego) / desired;
     auto const front = view.ahead(), rear = view.behind();
-    bool const unsafe = (front && front->gap < weights.safe_gap(speed, front->speed)) ||
+    bool const unsafe = (front && front->gap < weights.safe_gap(speed, front->speed) &&
+                         !goes_around(view, *front, world.template memory<Actions>(id))) ||
                         (rear && rear->gap < weights.safe_gap(rear->speed, speed));
     cost.safety += unsafe ? share : 0.0;
-    cost.navigation += share * LaneChangeUrgency{}(*workspace.world, workspace.ego);
+    cost.navigation += share * LaneChangeUrgency{}(world, workspace.ego);
   }
 };
 
