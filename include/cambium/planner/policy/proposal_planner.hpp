@@ -293,7 +293,7 @@ struct ProposalPlanner {
       auto const own = terms.judge(world, ego, step);
       proposal.terms += own.reward;
       auto const end = course_end(world, ego, [&](auto const& predicted, Slot slot) {
-        return AtFaultCollision{}.among(predicted, slot, workspace.to_avoid);
+        return collides(predicted, slot, workspace.to_avoid);
       });
       proposal.collides = end == CourseEnd::collision;
       proposal.leaves_road = end == CourseEnd::off_road;
@@ -309,6 +309,15 @@ struct ProposalPlanner {
     auto const& memory_then = world.template memory<IdmProposal>(world.roster().agents[ego].id);
     proposal.changes = is_valid(proposal.towards) && (world.frame().agents[ego].lane.corridor == proposal.towards ||
                                                       memory_then.lateral.change.target == proposal.towards);
+  }
+
+  /// Whether ego, in motion, touches an object or one that it has to avoid, whoever is to blame.
+  [[nodiscard]] static bool collides(World const& world, Slot ego, std::vector<Slot> const& to_avoid) {
+    if (world.frame().agents[ego].state.speed <= blameless_speed) return false;
+    auto const own = box_at(world, ego);
+    return AtFaultCollision{}.among(world, ego, {}) || std::ranges::any_of(to_avoid, [&](Slot other) {
+             return in_traffic(world, other) && geometry::intersects(own, box_at(world, other));
+           });
   }
 
   /// Sets the marks for time to collision and comfort after a step from `before`.
