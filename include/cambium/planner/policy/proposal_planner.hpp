@@ -311,9 +311,8 @@ struct ProposalPlanner {
                                                       memory_then.lateral.change.target == proposal.towards);
   }
 
-  /// Whether ego, in motion, touches an object or one that it has to avoid, whoever is to blame.
+  /// Whether ego touches an object or one that it has to avoid, whoever is to blame.
   [[nodiscard]] static bool collides(World const& world, Slot ego, std::vector<Slot> const& to_avoid) {
-    if (world.frame().agents[ego].state.speed <= blameless_speed) return false;
     auto const own = box_at(world, ego);
     return AtFaultCollision{}.among(world, ego, {}) || std::ranges::any_of(to_avoid, [&](Slot other) {
              return in_traffic(world, other) && geometry::intersects(own, box_at(world, other));
