@@ -19,7 +19,8 @@
 namespace cambium {
 
 /// A rule of lane changes for `ChangeLanes` that somebody else decides: to the lane corridor `towards`, as soon as that
-/// is safe and the lane stays beside until the change has ended.
+/// is safe and the lane stays beside until the change has ended. Until then it comes to the speed of the next vehicle
+/// there.
 struct ChangeTowards {
   CorridorId towards = none<CorridorId>;
 
@@ -45,7 +46,10 @@ struct ChangeTowards {
     double const length = now.changing.course.begin(towards, view.shape(), speed, 0.0).left;
     if (!stays_beside(view, left, view.place().s + length)) return false;
     auto const option = now.beside(left);
-    return option && now.is_safe(*option);
+    if (!option) return false;
+    bool const is_safe = now.is_safe(*option);
+    if (!is_safe) now.adapt_to(option->front);
+    return is_safe;
   }
 
   /// Whether the lane beside on that side is of corridor `towards` up to corridor position `until` [m].

@@ -71,6 +71,23 @@ struct LaneChoice {
     return limits.response()(option.front ? detail::constraint_of<Response>(view, *option.front, option.place)
                                           : Constraint{});
   }
+
+  /// Follows a vehicle in another lane, but as if the gap were at least the desired headway, because nobody brakes hard
+  /// for it; behind one that is not slower, at least that of steady following. So the driver comes to the other's speed
+  /// and keeps it: who followed slower ones alone would brake and accelerate by turns.
+  void adapt_to(std::optional<RoadUser> const& front) const {
+    constexpr double slower = 2.0;  // [m/s] from which the desired headway counts
+    if (!front || !(front->gap > 0.0)) return;
+    auto const& law = limits.law();
+    auto const& response = limits.response();
+    double const speed = response.speed(), headway = law.minimum_gap + speed * law.time_headway;
+    double const free = response(Constraint{}), behind = response(Constraint{headway, speed});
+    // In most laws the inverse square of the gap counts; in steady following it takes away all of `free`.
+    double const steady = free > 0.0 ? free / (free - std::min(behind, 0.0)) : 0.0;
+    double const share = std::clamp((speed - front->speed) / slower, 0.0, 1.0);
+    double const inverse_square = steady + share * (1.0 - steady);
+    if (inverse_square > 0.0) limits.heed({std::max(front->gap, headway / std::sqrt(inverse_square)), front->speed});
+  }
 };
 
 namespace detail {

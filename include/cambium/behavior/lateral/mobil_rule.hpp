@@ -122,7 +122,7 @@ struct MobilRule {
       if (urge <= 0.0 && remaining < route_horizon && is_way_out(view, side, end)) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.ahead(option.place, now.look());
-      if (urge > 0.0 && !goes_on) adapt_to(now, option.front);
+      if (urge > 0.0 && !goes_on) now.adapt_to(option.front);
       situation.own_after = now.response(option);
       if (is_prejudged && others + situation.own_after + pull <= best) continue;
       option.rear = view.behind(option.place, now.look());
@@ -132,25 +132,6 @@ struct MobilRule {
       target = side;
     }
     return target;
-  }
-
-  /// Follows a vehicle in another lane, but as if the gap were at least the desired headway, because nobody brakes hard
-  /// for it; behind one that is not slower, at least that of steady following. So the driver comes to the other's speed
-  /// and keeps it: who followed slower ones alone would brake and accelerate by turns.
-  template <class Choice>
-  void adapt_to(Choice const& now, std::optional<RoadUser> const& front) const {
-    constexpr double slower = 2.0;  // [m/s] from which the desired headway counts
-    if (!front || !(front->gap > 0.0)) return;
-    auto const& law = now.limits.law();
-    auto const& response = now.limits.response();
-    double const speed = response.speed(), headway = law.minimum_gap + speed * law.time_headway;
-    double const free = response(Constraint{}), behind = response(Constraint{headway, speed});
-    // In most laws the inverse square of the gap counts; in steady following it takes away all of `free`.
-    double const steady = free > 0.0 ? free / (free - std::min(behind, 0.0)) : 0.0;
-    double const share = std::clamp((speed - front->speed) / slower, 0.0, 1.0);
-    double const inverse_square = steady + share * (1.0 - steady);
-    if (inverse_square > 0.0)
-      now.limits.heed({std::max(front->gap, headway / std::sqrt(inverse_square)), front->speed});
   }
 
   /// Acceleration of a follower behind this vehicle, and behind `front` once this vehicle has left.
@@ -191,7 +172,7 @@ struct MobilRule {
     auto const inner = keeps_left(now.view, piece.lane) ? piece.right : piece.left;
     if (inner == none<CorridorId>) return;
     auto const there = now.view.ahead(now.view.place(inner));
-    if (there && there->speed > critical_speed) adapt_to(now, there);
+    if (there && there->speed > critical_speed) now.adapt_to(there);
   }
 
   template <class View>
