@@ -114,7 +114,7 @@ struct ProposalPlanner {
   };
 
   // Not lists in braces: g++ 12 takes these for uninitialised at -O2.
-  static constexpr double usual_speed_shares[] = {1.0, 0.8, 0.6, 0.4, 0.2}, usual_offsets[] = {0.0, -1.0, 1.0};
+  static constexpr double usual_speed_shares[] = {1.0, 0.8, 0.6, 0.4, 0.2, 0.0}, usual_offsets[] = {0.0, -1.0, 1.0};
 
   IdmProposal driver{};
   Others others{};
