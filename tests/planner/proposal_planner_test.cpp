@@ -152,7 +152,7 @@ TEST_CASE("a scored proposal reports its outcome, and the best is driven") {
   world.add({.position = {75, -5.25}, .speed = 4, .behavior = ConstantAcceleration{}});
   world.add_object(obstacle(90, -5.25, -3.5, -1.0));
   auto const report = report_of(Proposal{}, world);
-  REQUIRE(report.details.size() == 20);  // 5 speeds at 3 offsets, and into the left lane
+  REQUIRE(report.details.size() == 24);  // 6 speeds at 3 offsets, and into the left lane
   auto const& best = report.details[*report.chosen];
   for (auto const& p : report.details) {
     CHECK(p.score <= best.score + Proposal{}.scoring.indifference);

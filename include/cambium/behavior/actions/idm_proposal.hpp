@@ -19,8 +19,8 @@
 namespace cambium {
 
 /// A rule of lane changes for `ChangeLanes` that somebody else decides: to the lane corridor `towards`, as soon as that
-/// is safe and the lane stays beside until the change has ended. Until then it comes to the speed of the next vehicle
-/// there.
+/// is safe and the lane stays beside until the change has ended. Until then it comes to the speed of a slower
+/// vehicle ahead there.
 struct ChangeTowards {
   CorridorId towards = none<CorridorId>;
 
@@ -48,7 +48,7 @@ struct ChangeTowards {
     auto const option = now.beside(left);
     if (!option) return false;
     bool const is_safe = now.is_safe(*option);
-    if (!is_safe) now.adapt_to(option->front);
+    if (!is_safe && option->front && option->front->speed < speed) now.adapt_to(option->front);
     return is_safe;
   }
 
@@ -65,7 +65,8 @@ struct ChangeTowards {
 /// Follows the next vehicle in its path by `Law`, at a share of its desired speed and an offset from the middle of its
 /// lane, or changes into a lane beside it as soon as that is safe (see `ChangeLanes`). Share, offset and lane are its
 /// memory, which a planner sets to try several proposals (see `ProposalPlanner`). It passes road users in its lane that
-/// leave enough room, and heeds `Heeds`.
+/// leave enough room, and heeds `Heeds`. It has no `heeds_conflicts`, for nobody is expected to drive like this; the
+/// planner has.
 template <CarFollowingLaw Law, class... Heeds>
 struct BasicProposal {
   using Lateral = ChangeLanes<ChangeTowards>;
@@ -96,7 +97,6 @@ struct BasicProposal {
   [[no_unique_address]] Heeding<Heeds...> heeds{};
   double clearance = 0.2;
 
-  static constexpr bool heeds_conflicts = (detail::heeds_conflicts<Heeds>() || ...);
   static constexpr char const* name = "idm_proposal";
   static constexpr char const* summary =
       "follows at a share of the desired speed, and at an offset from the lane's middle or into a lane beside it, as a "
@@ -114,10 +114,11 @@ struct BasicProposal {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
-    double const desired =
-        std::max(0.1, static_cast<double>(memory.speed_share) * heeds.desired_speed(law, view, speed));
+    constexpr double slowest = 0.1, lower = 0.76;  // [m/s]; of its speed, so that IDM brakes with 3 m/s^2 or less
+    double const share = memory.speed_share;
+    double const desired = std::max({slowest, lower * speed, share * heeds.desired_speed(law, view, speed)});
     Limits<Law> limits(law, speed, desired, heeds.merging(view, lateral.keep.merging));
-    limits.gives_way = heeds_conflicts;
+    limits.gives_way = (detail::heeds_conflicts<Heeds>() || ...);
     bool const is_there = memory.towards == none<CorridorId> || memory.towards == view.place().corridor;
     if (memory.lateral.change.active() || !is_there) {
       auto changing = lateral;

@@ -202,13 +202,13 @@ struct ChangeLanes {
     course.renew(memory.change, view.shape(), speed);
     if (memory.lane.adrift) [[unlikely]]
       enter(view, memory);
-    // On its way back, but without room to reach the middle first: it must leave this lane, too, or goes around the
-    // leader.
     if (memory.change.target == home && speed < standing_speed &&
-        (distance_to_stop(view, view.place()) < limits.law().minimum_gap + 1 ||
-         (leader && leader->speed < detail::at_rest_below)))
-      memory.change = {};
-    if (memory.change.active()) {
+        distance_to_stop(view, view.place()) < limits.law().minimum_gap + 1)
+      memory.change = {};  // the vehicle must leave this lane, too, and has no room left to reach its middle first
+    bool const leader_stands = leader && leader->speed < detail::at_rest_below;
+    // On its way back behind one that stands, it has no room for that, either, and may decide anew.
+    bool const is_stuck = memory.change.target == home && speed < standing_speed && leader_stands;
+    if (memory.change.active() && !is_stuck) {
       if (memory.change.target != home && !may_go_on(view, limits, memory.change)) abort(view, speed, memory);
       limits = while_changing(view, limits, leader, memory.change);
     } else {
@@ -218,16 +218,18 @@ struct ChangeLanes {
       bool const may_change = memory.rest == 0.0f && !is_passing;
       Choice const choice{view, limits, leader, end, may_change, *this};
       auto const target = rule(choice);
+      std::optional<LaneChange> change;
       if (may_change && is_beside(view, target) && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
-        std::optional change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
-        if (leader && leader->speed < detail::at_rest_below) change = course.around(view, *change, *leader);
-        if (change && !(limits.gives_way && enters_crossing(view, *change))) {
-          memory.change = *change;
-          memory.rest = static_cast<float>(rest + course.duration);
-          limits.forget_constraints();
-          limits = while_changing(view, limits, leader, *change);
-        }
+        change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
+        if (leader_stands) change = course.around(view, *change, *leader);
+        if (change && limits.gives_way && enters_crossing(view, *change)) change.reset();
       }
+      if (change) {
+        memory.change = *change;
+        memory.rest = static_cast<float>(rest + course.duration);
+        limits.forget_constraints();
+      }
+      if (change || is_stuck) limits = while_changing(view, limits, leader, memory.change);
     }
     if (!view.corridor().feeders.empty()) [[unlikely]]
       limits = with_merging(view, leader, memory.change.active() && memory.change.target != home, limits);

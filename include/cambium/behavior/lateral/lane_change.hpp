@@ -219,15 +219,16 @@ struct LaneChangeCourse {
   }
 
   /// `change`, which begins, or the longest shorter one that leads around `other`, a road user that stands; nothing if
-  /// none does. At walking speed it may be as short as a vehicle can steer, the shorter the less it moves sideways.
-  /// O(1).
+  /// none does. At walking speed a car or van may take a course as short as it can steer, the shorter the less it moves
+  /// sideways; longer vehicles would swing out into the lane beyond. O(1).
   template <class View>
   [[nodiscard]] std::optional<LaneChange> around(View const& view, LaneChange change, RoadUser const& other) const {
     constexpr double tightest = 0.75, width = 3.5, shorter = 0.9;  // share of the least length for [m]; of the last one
     constexpr double air = 0.2;                                    // [m] more than while it is under way
     double const speed = std::max(0.0, view.state().speed), across = std::abs(view.place(change.target).lateral);
-    double const shortest = std::max(tightest * least_length(view.shape()) * std::sqrt(std::min(1.0, across / width)),
-                                     speed * std::min(shortest_duration, duration));
+    double const share =
+        view.shape().front > geometry::van().front ? 1.0 : tightest * std::sqrt(std::min(1.0, across / width));
+    double const shortest = std::max(share * least_length(view.shape()), speed * std::min(shortest_duration, duration));
     for (double length = change.left;; length = std::max(shortest, shorter * length)) {
       change.left = static_cast<float>(length);
       if (leads_around(view, change, other, air)) return change;

@@ -103,6 +103,7 @@ struct FrenetCandidate {
   CorridorId corridor = none<CorridorId>;  ///< the lane corridor along whose centre line it runs
   Kind kind = Kind::keep_speed;
   bool by_way = false;       ///< at low speed: the offset depends on the distance, not on time
+  bool tight = false;        ///< likewise, over as little distance as it can steer
   double duration{};         ///< [s]
   double offset{};           ///< at the end [m]
   double speed{};            ///< at the end [m/s]
@@ -165,6 +166,7 @@ struct FrenetTarget {
   auto const in_time = quintic(d, {offset, 0.0, 0.0}, duration);
   c.by_way = std::min(start.speed, target.speed) < low_speed;
   c.way = std::max(shortest_way, c.along.at(duration).position - start.s);
+  c.tight = tight;
   if (tight) c.way = std::min(c.way, tight_way * std::sqrt(std::abs(offset - start.offset) / width));
   c.across = c.by_way ? quintic({start.offset, start.slope, start.bend}, {offset, 0.0, 0.0}, c.way) : in_time;
   double const off = target.speed - desired_speed;

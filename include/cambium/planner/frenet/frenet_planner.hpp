@@ -259,6 +259,7 @@ struct FrenetPlanner {
     words += " in " + detail::rounded_text(c.duration) + " s, " + detail::rounded_text(c.speed) + " m/s at " +
              detail::rounded_text(c.offset) + " m";
     if (c.corridor != view.place().corridor) words += c.corridor == piece.left ? ", left lane" : ", right lane";
+    if (c.tight) words += ", tight";
     return {words, -c.cost, c.verdict == FrenetVerdict::valid ? "" : to_string(c.verdict)};
   }
 

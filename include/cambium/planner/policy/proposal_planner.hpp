@@ -129,7 +129,7 @@ struct ProposalPlanner {
   Budget budget{};
   Own terms{};
 
-  static constexpr bool heeds_conflicts = IdmProposal::heeds_conflicts;
+  static constexpr bool heeds_conflicts = true;
   static constexpr char const* name = "proposal_planner";
   static constexpr char const* summary =
       "simulates IDM drivers at several speeds, at lateral offsets and into the lanes beside, and drives like the one "
