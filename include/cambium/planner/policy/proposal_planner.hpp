@@ -292,9 +292,8 @@ struct ProposalPlanner {
                            portable::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
       auto const own = terms.judge(world, ego, step);
       proposal.terms += own.reward;
-      auto const end = course_end(world, ego, [&](auto const& predicted, Slot slot) {
-        return collides(predicted, slot, workspace.to_avoid);
-      });
+      auto const end = course_end(
+          world, ego, [&](auto const& predicted, Slot slot) { return collides(predicted, slot, workspace.to_avoid); });
       proposal.collides = end == CourseEnd::collision;
       proposal.leaves_road = end == CourseEnd::off_road;
       if (proposal.fails()) proposal.time_to_infraction = (k + 1) * step;
