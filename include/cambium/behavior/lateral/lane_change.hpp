@@ -224,7 +224,7 @@ struct LaneChangeCourse {
   template <class View>
   [[nodiscard]] std::optional<LaneChange> around(View const& view, LaneChange change, RoadUser const& other) const {
     constexpr double tightest = 0.75, width = 3.5, shorter = 0.9;  // share of the least length for [m]; of the last one
-    constexpr double air = 0.2;                                    // [m] more than while it is under way
+    constexpr double air = 0.2;                                    // [m]; twice that of a change under way
     double const speed = std::max(0.0, view.state().speed), across = std::abs(view.place(change.target).lateral);
     double const share =
         view.shape().front > geometry::van().front ? 1.0 : tightest * std::sqrt(std::min(1.0, across / width));
