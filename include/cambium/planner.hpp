@@ -58,6 +58,7 @@
 #include "cambium/core/macros.hpp"
 
 #include "cambium/planner/candidate_planner.hpp"
+#include "cambium/planner/explain.hpp"
 #include "cambium/planner/frenet/frenet_candidate.hpp"
 #include "cambium/planner/frenet/frenet_motion.hpp"
 #include "cambium/planner/frenet/frenet_planner.hpp"

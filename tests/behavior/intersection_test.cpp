@@ -19,7 +19,7 @@ using lane_traffic::enter;
 
 namespace {
 
-using Set = BehaviorSet<Intersection, IdmClassic>;
+using Set = BehaviorSet<Intersection, IdmClassic, ConstantAcceleration>;
 using Sim = World<Set, InterpolateExecution, SingleTrack>;
 
 /// The four-way crossing. Arms 1 (east), 2 (north), 3 (west), 4 (south) lead in against their road's direction; the
@@ -207,6 +207,32 @@ TEST_CASE("four cars that arrive at a crossing together all get through") {
         CAPTURE(apart);
         for (auto const& time : times_through(world, ids)) CHECK(time);
       }
+}
+
+TEST_CASE("a driver who insists does not let one through who has to let it go first, unless that one stands") {
+  Crossing const crossing;
+  auto const slowest = [&](bool insists, bool other_stands) {
+    Sim world(crossing.map);
+    auto const other = add_before(world, crossing.route(1, 2), -8.0, 5.0);  // turns left before oncoming traffic
+    world.set_behavior(other, ConstantAcceleration{});
+    while (other_stands && world.state(other).y > -3.5) REQUIRE(world.step(0.1));
+    auto state = world.state(other);
+    if (other_stands) state.speed = 0.0;
+    world.set_state(other, state);
+    auto const own = add_before(world, crossing.route(3, 0), 8.0, 10.0);
+    Intersection driver{.law = {.desired_speed = 10.0}};
+    driver.heed<Conflicts>().insists = insists;
+    world.set_behavior(own, driver);
+    double least = 10.0;
+    for (int i = 0; i < 12; ++i) {
+      REQUIRE(world.step(0.1));
+      least = std::min(least, world.state(own).speed);
+    }
+    return least;
+  };
+  CHECK(slowest(false, false) < 8.0);
+  CHECK(slowest(true, false) > 9.5);
+  CHECK(slowest(true, true) < 8.0);
 }
 
 TEST_CASE("a junction's priorities override right before left") {

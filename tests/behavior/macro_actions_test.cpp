@@ -202,6 +202,25 @@ TEST_CASE("changes are available if there is a lane on that side") {
   CHECK_FALSE(cb::MacroActions{}.available(at.world.observe(at.id), 7));
 }
 
+TEST_CASE("a change is unavailable beside others, and where a follower would have to brake harder than is safe") {
+  auto const available = [](double x, double speed, double safe) {
+    Highway at({}, -5.25);
+    auto const own = at.world.state(at.id);
+    at.world.add({.position = {own.x + x, -1.75}, .speed = own.speed + speed, .behavior = cb::IdmClassic{}});
+    cb::MacroActions const macro{.safe_deceleration = safe};
+    CHECK(macro.available(at.world.observe(at.id), number_of(Kind::change_right)));
+    return macro.available(at.world.observe(at.id), number_of(Kind::change_left));
+  };
+  CHECK_FALSE(available(0.0, 0.0, 50.0));
+  CHECK_FALSE(available(4.0, 0.0, 50.0));
+  CHECK_FALSE(available(-4.0, 0.0, 50.0));
+  CHECK(available(40.0, 0.0, 3.0));
+  CHECK(available(-40.0, 0.0, 3.0));
+  CHECK_FALSE(available(-25.0, 10.0, 3.0));
+  CHECK(available(-25.0, 10.0, 50.0));
+  CHECK(available(25.0, 10.0, 3.0));
+}
+
 TEST_CASE("a change into a lane that ends too soon is unavailable and does not begin") {
   World world(support::own_map("lane_drop.xodr"));
   auto const number = number_of(Kind::change_right);

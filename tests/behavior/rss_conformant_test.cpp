@@ -177,9 +177,11 @@ TEST_CASE("a vehicle that must brake during a lane change stays on its course an
 TEST_CASE("a vehicle that must keep off a side delays its lane change, and then changes without a jump") {
   World world(straight_road(2, 1500.0));
   auto const one = world.add({.position = {100, -5.25}, .speed = 15, .behavior = Safe<cb::MacroActions>{}});
-  auto const beside =
-      world.add({.position = {100, -1.75}, .speed = 15, .behavior = cb::ConstantAcceleration{.acceleration = 0.0}});
   world.memory<Safe<cb::MacroActions>>(one).choose(change_left);
+  REQUIRE(world.step(0.2));  // begins the change before anybody is there
+  auto const beside = world.add({.position = {world.state(one).x, -1.75},
+                                 .speed = 15,
+                                 .behavior = cb::ConstantAcceleration{.acceleration = 0.0}});
   for (int i = 0; i < 50; ++i) {
     CHECK(world.step(0.2));
     CHECK(world.state(one).y < -3.9);

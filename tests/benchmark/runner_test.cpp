@@ -230,6 +230,57 @@ TEST_CASE("a result is what an own loop finds") {
   }
 }
 
+TEST_CASE("what a planner expected of the others is compared with what they did") {
+  using Predicted = Traffic::WithBehaviors<BehaviorSet<MacroActions, IdmProposal, ConstantAcceleration>>;
+  // On a long road, others begin at `speed` and want to drive at 10 m/s. The planner expects them to keep their speed.
+  auto const run = [](double speed, auto const& planner) {
+    Scenario<Traffic> scenario{.map = support::straight_road(2, 2000.0), .seed = 1};
+    scenario.agents.push_back({.position = {200, -1.75}, .speed = 10.0, .id = AgentId{0}});
+    for (double const x : {180.0, 220.0, 300.0})  // the last one is too far away to count
+      scenario.agents.push_back({.position = {x, -5.25},
+                                 .speed = speed,
+                                 .behavior = IdmClassic{.law = {.desired_speed = 10.0}},
+                                 .id = AgentId{static_cast<std::uint32_t>(x)}});
+    scenario.ego = AgentId{0};
+    return contender<Traffic>(planner).run(scenario, {.time_limit = 8.0}, false).result;
+  };
+  ProposalPlanner<Predicted> planner;
+  planner.driver.law.desired_speed = 10.0;
+  auto const right = run(10.0, planner), wrong = run(5.0, planner);
+  CHECK(right.prediction_error_1s < 0.05);
+  CHECK(right.prediction_error_5s < 0.5);
+  CHECK(std::isnan(right.prediction_brier));  // it knows one course only
+  // IDM accelerates by 1.7 (1 - (v / 10)^4) m/s^2.
+  CHECK(wrong.prediction_error_1s > 0.1);
+  CHECK(wrong.prediction_error_1s < 0.8);
+  CHECK(wrong.prediction_error_3s > 4.0 * wrong.prediction_error_1s);
+  CHECK(wrong.prediction_error_5s > wrong.prediction_error_3s);
+  auto const tree = run(10.0, PolicyTreePlanner<Predicted>{});
+  CHECK(tree.prediction_brier > 0.0);
+  CHECK(tree.prediction_brier < 2.0);
+  CHECK(std::isnan(run(10.0, IdmClassic{.law = {.desired_speed = 10.0}}).prediction_error_1s));
+}
+
+TEST_CASE("a Brier score is that of the alternatives, of which the nearest comes true") {
+  detail::PredictionJudge judge;
+  Traffic world(support::straight_road(1, 900.0));
+  auto const id =
+      world.add({.position = {100, -1.75}, .speed = 10.0, .behavior = IdmClassic{.law = {.desired_speed = 10.0}}});
+  auto const at = [&](double x, double probability) {
+    return Alternative{id, probability, {.time = 3.0, .x = x, .y = -1.75, .speed = 10.0}};
+  };
+  judge.note({at(100.0, 0.2), at(131.0, 0.7), at(150.0, 0.1)}, 0.0);
+  RunResult result;
+  for (int i = 0; i < 15; ++i) {
+    judge.write(result);
+    CHECK(std::isnan(result.prediction_brier));
+    REQUIRE(world.step(0.2));
+    judge.compare(world);
+  }
+  judge.write(result);
+  CHECK(result.prediction_brier == doctest::Approx(0.2 * 0.2 + 0.3 * 0.3 + 0.1 * 0.1));
+}
+
 TEST_CASE("who leaves the map before its goal has left its way") {
   auto set = support::merging_set<Traffic>(1);
   auto& scenario = set.scenarios.front();

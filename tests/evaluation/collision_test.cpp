@@ -161,6 +161,20 @@ TEST_CASE("up to 1024 agents nothing is allocated, beyond one block") {
   }
 }
 
+TEST_CASE("in the last step, what is touched between its frames counts, and what comes closer than a margin") {
+  Sim world(straight_road(1, 900.0));
+  auto const a = world.add({.position = {100.0, -1.75}, .speed = 30.0, .behavior = cb::ConstantAcceleration{}});
+  world.add({.position = {106.0, -3.0}, .speed = 1.0, .behavior = cb::ConstantAcceleration{}});
+  auto const slot = world.slot_of(a);
+  CHECK_FALSE(cb::Collision{}.in_last_step(world, slot));
+  REQUIRE(world.step(0.5));  // past the other one, whom it touches on the way
+  CHECK_FALSE(cb::Collision{}(world, slot));
+  CHECK(cb::Collision{}.in_last_step(world, slot));
+  REQUIRE(world.step(0.5));
+  CHECK_FALSE(cb::Collision{}.in_last_step(world, slot));
+  CHECK(cb::Collision{30.0}.in_last_step(world, slot));
+}
+
 TEST_CASE("collisions with static objects are those of the twin") {
   int const collisions = compare({4, 60, 60, 0.5, 6}, 1000);
   CHECK(collisions > 100);

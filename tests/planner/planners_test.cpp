@@ -119,9 +119,10 @@ struct Greedy {
     return workspace.drive<MacroActions>(view, dt, step, memory);
   }
   template <class View>
-  [[nodiscard]] auto foresee(View const&, Memory const&, Workspace& workspace) const {
+  [[nodiscard]] auto foresee(View const&, Memory const&, Workspace& workspace,
+                             std::optional<std::size_t> candidate) const {
     std::vector course{workspace.start};
-    try_out(workspace, workspace.chosen.value_or(0), &course);
+    try_out(workspace, candidate ? *candidate : workspace.chosen.value_or(0), &course);
     return course;
   }
   template <class View>
@@ -378,6 +379,44 @@ TEST_CASE_TEMPLATE("its report has a course up to the horizon, and the reasons",
     CHECK(world.state(ego) == planned);
     CHECK(world.template memory<Planner>(ego) == report.memory);
   }
+}
+
+TEST_CASE_TEMPLATE("its candidates are explained by their paths, and by whom they meet", Planner, ALL_PLANNERS) {
+  auto const planner = quick<Planner>();
+  Sim<Planner> world(support::straight_road(2, 900.0));
+  world.add({.position = {80, -5.25}, .speed = 15.0, .behavior = planner});
+  auto const slow =
+      world.add({.position = {110, -5.25}, .speed = 5.0, .behavior = IdmClassic{.law = {.desired_speed = 5.0}}});
+  auto const beside =
+      world.add({.position = {40, -1.75}, .speed = 20.0, .behavior = IdmClassic{.law = {.desired_speed = 20.0}}});
+  world.add({.position = {50, -5.25}, .speed = 15.0});  // behind it, in its lane
+  world.add({.position = {500, -5.25}, .speed = 15.0});
+  typename Planner::Workspace workspace;
+  auto report = planner.think(world.observe(ego), {}, workspace);
+  explain(planner, world.observe(ego), {}, workspace, report);
+  auto const slot = world.slot_of(ego);
+  std::size_t behind_slow = 0;
+  for (auto const& candidate : report.candidates) {
+    CAPTURE(candidate.name);
+    REQUIRE(candidate.path.size() == report.course.size());
+    CHECK(candidate.path.front() == world.state(ego));
+    CHECK(candidate.path.back().time == doctest::Approx(report.course.back().time));
+    CHECK((is_valid(candidate.because) ? candidate.time_apart <= 3.0 + same_time : std::isinf(candidate.time_apart)));
+    CHECK((candidate.because == none<AgentId> || candidate.because == slow || candidate.because == beside));
+    behind_slow += candidate.because == slow;
+  }
+  CHECK(behind_slow > 0);
+  REQUIRE(report.chosen);
+  for (std::size_t k = 0; k < report.course.size(); ++k)
+    CHECK(report.candidates[*report.chosen].path[k] == report.course[k].agents[slot].state);
+  // Without the slow one it is not in the reasons. The workspace and the report must belong together.
+  world.remove(slow);
+  typename Planner::Workspace other;
+  report = planner.think(world.observe(ego), {}, other);
+  CHECK_THROWS_AS(explain(planner, world.observe(ego), {}, workspace, report), SearchError);
+  report = planner.think(world.observe(ego), {}, workspace);
+  explain(planner, world.observe(ego), {}, workspace, report);
+  for (auto const& candidate : report.candidates) CHECK(candidate.because != slow);
 }
 
 TEST_CASE_TEMPLATE("it reports when there is nothing to plan or a parameter is not a number", Planner, ALL_PLANNERS) {

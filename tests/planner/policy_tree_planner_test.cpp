@@ -141,6 +141,8 @@ TEST_CASE("the weight of the worst case decides which risk is taken") {
     planner.weights.least_odds = least_odds;
     planner.weights.reaction_time = 0.0;  // small gaps are safe, collisions are not
     planner.weights.braking = 50.0;
+    planner.weights.courtesy = planner.weights.clearance = 0.0;
+    planner.actions.safe_deceleration = 50.0;
     auto const report = report_of(planner, world);
     return report.candidates[*report.chosen].name.starts_with("change_left");
   };

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
+#include "cambium/benchmark/detail/prediction_judge.hpp"
 #include "cambium/benchmark/detail/run_judge.hpp"
 #include "cambium/benchmark/run_result.hpp"
 #include "cambium/core/error.hpp"
@@ -103,8 +104,9 @@ struct Contender {
 
 namespace detail {
 
-/// How long plans of the ego took, and those of other controlled agents.
+/// How long plans of the ego took, and those of other controlled agents; and what it expects of others.
 struct PlanClock {
+  PredictionJudge predictions{};
   RunTimes times{};
   double step_ms = 0.0, sum_ms = 0.0, others_ms = 0.0;
 
@@ -132,11 +134,29 @@ struct Timed : Behavior {
 
   template <class View, class... More>
   [[nodiscard]] Plan<View> plan(View const& view, MemoryOf<Behavior>& memory, double dt, More&... workspace) const {
+    [[maybe_unused]] auto const before = memory;
     auto const begin = std::chrono::steady_clock::now();
     auto plan = Behavior::plan(view, memory, dt, workspace...);
-    if (clock != nullptr)
-      clock->add(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count(), is_ego);
+    if (clock == nullptr) return plan;
+    clock->add(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count(), is_ego);
+    if constexpr (sizeof...(More) == 1)
+      if (is_ego && plan.status != PlanStatus::failed && clock->predictions.asks(view.time()))
+        (note_prediction(view, before, workspace), ...);
     return plan;
+  }
+
+ private:
+  /// Notes what the planner expects of the others, if it is one.
+  template <class View, class Workspace>
+  void note_prediction(View const& view, MemoryOf<Behavior> const& before, Workspace& workspace) const {
+    Behavior const& planner = *this;
+    constexpr bool foresees = requires { planner.foresee(view, before, workspace, std::optional<std::size_t>()); };
+    if constexpr (foresees) {
+      auto& judge = clock->predictions;
+      judge.note(workspace.predicted().roster(), view.id(), planner.foresee(view, before, workspace, {}));
+      if constexpr (requires { planner.alternatives(view, before, workspace, 1.0); })
+        judge.note(planner.alternatives(view, before, workspace, judge.span_of_alternatives), view.time());
+    }
   }
 };
 
@@ -325,6 +345,7 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
         if constexpr (keeps) last.add(world);
       }
       run.result = detail::run_world(world, own, options, [&](World const& now, RunResult& result) {
+        clock.predictions.compare(now);
         if (film) film->record(now);
         if constexpr (keeps)
           if (film) last.add(now);
@@ -333,6 +354,7 @@ template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
         result.error_kind = RunErrorKind::plans_too_long;
         result.error = "its plans took longer than " + detail::rounded_text(options.plan_limit) + " s together";
       });
+      clock.predictions.write(run.result);
       threw = false;
     } catch (std::exception const& problem) {
       run.result = {};

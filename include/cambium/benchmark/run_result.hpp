@@ -71,6 +71,10 @@ struct RunResult {
   double time_exposed_s = 0.0;
   double time_integrated = 0.0;
   bool discomfort = false;
+  double prediction_error_1s = undefined;
+  double prediction_error_3s = undefined;
+  double prediction_error_5s = undefined;
+  double prediction_brier = undefined;
 
   static constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
@@ -146,7 +150,14 @@ struct RunResult {
                   "time integrated TTC: what lacked of these 2 s, over time"),
         parameter("discomfort", &P::discomfort,
                   "accelerations, jerks or turns of the ego were beyond the bounds of its score"));
-    return join_parameters(join_parameters(outcome, driving), rules);
+    auto const predictions = parameter_list(
+        parameter("prediction_error_1s", &P::prediction_error_1s, "m", non_negative,
+                  "mean distance of others from where the ego's planner expected them a second before"),
+        parameter("prediction_error_3s", &P::prediction_error_3s, "m", non_negative, "3 s before"),
+        parameter("prediction_error_5s", &P::prediction_error_5s, "m", non_negative, "5 s before"),
+        parameter("prediction_brier", &P::prediction_brier, "-", Range{0, 2},
+                  "Brier score of the probabilities that it gave to the ways of others, 3 s ahead; 0 is best"));
+    return join_parameters(join_parameters(join_parameters(outcome, driving), rules), predictions);
   }
 
   /// Whether more or less of a field is better. Outcomes, safety and the closed-loop score are judged. Speeds and gaps
@@ -154,9 +165,26 @@ struct RunResult {
   [[nodiscard]] static Better better(std::string_view field) {
     for (char const* more : {"success", "rss_compliance", "closed_loop_score"})
       if (field == more) return Better::more;
-    for (char const* less : {"collision", "at_fault", "off_road", "off_route", "error", "hard_brakings",
-                             "others_collided", "infeasible", "red_light", "stop_sign", "right_of_way", "wrong_way",
-                             "speeding", "solid_line", "impact_speed", "imposed_braking"})
+    for (char const* less : {"collision",
+                             "at_fault",
+                             "off_road",
+                             "off_route",
+                             "error",
+                             "hard_brakings",
+                             "others_collided",
+                             "infeasible",
+                             "red_light",
+                             "stop_sign",
+                             "right_of_way",
+                             "wrong_way",
+                             "speeding",
+                             "solid_line",
+                             "impact_speed",
+                             "imposed_braking",
+                             "prediction_error_1s",
+                             "prediction_error_3s",
+                             "prediction_error_5s",
+                             "prediction_brier"})
       if (field == less) return Better::less;
     return Better::neither;
   }

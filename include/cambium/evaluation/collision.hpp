@@ -50,10 +50,11 @@ template <class World>
 }  // namespace detail
 
 /// The motion of the box of the agent at `slot` in the last step, see `World::before_step`. It rests where it is if the
-/// agent was not in traffic before, or if no step led to the world's frame.
+/// agent was not in traffic before, or if no step led to the world's frame. Enlarged by `margin` [m] on all sides.
 template <class World>
-[[nodiscard]] geometry::MovingBox motion_at(World const& world, Slot slot) {
-  auto const& shape = world.roster().agents[slot].shape;
+[[nodiscard]] geometry::MovingBox motion_at(World const& world, Slot slot, double margin = 0.0) {
+  auto shape = world.roster().agents[slot].shape;
+  for (auto* const side : {&shape.front, &shape.rear, &shape.left, &shape.right}) *side += margin;
   auto const& now = world.frame().agents[slot].state;
   if (auto const* const from = detail::state_before(world, slot)) return {shape, *from, now};
   return {shape, geometry::Pose{now.x, now.y, now.heading}};
@@ -196,15 +197,16 @@ template <class World>
 }
 
 /// Calls `f(other)` for the slot of each agent that the one at `slot` touches or touched during the last step, in which
-/// both may have left traffic. O(agents).
+/// both may have left traffic. A distance below `margin` [m] counts as contact. O(agents).
 template <class World, class F>
-void for_each_touched(World const& world, Slot slot, F const& f) {
+void for_each_touched(World const& world, Slot slot, F const& f, double margin = 0.0) {
   if (!drove_in_step(world, slot)) return;
   auto const* const before = world.before_step();
-  auto const own = moving_circle_of(world, before, slot);
+  auto own = moving_circle_of(world, before, slot);
+  own.radius += 2.0 * margin;
   for (Slot other{}; index_of(other) < world.size(); ++other)
     if (other != slot && drove_in_step(world, other) && own.meets(moving_circle_of(world, before, other)) &&
-        geometry::intersects(motion_at(world, slot), motion_at(world, other)))
+        geometry::intersects(motion_at(world, slot, margin), motion_at(world, other)))
       f(other);
 }
 
@@ -259,6 +261,16 @@ struct Collision {
     if (world.roster().objects.empty()) return std::nullopt;
     auto const* const object = detail::touched_object(world, own());
     return object ? std::optional(Contact{.object = object->id}) : std::nullopt;
+  }
+
+  /// Whether an agent touches anything, or touched it during the last step, also between its two frames; of objects,
+  /// without the margin. O(agents + objects).
+  template <class World>
+  [[nodiscard]] bool in_last_step(World const& world, Slot slot) const {
+    bool touches = false;
+    detail::for_each_touched(
+        world, slot, [&](Slot) { touches = true; }, margin);
+    return touches || detail::touched_object_in_step(world, slot) != nullptr;
   }
 };
 

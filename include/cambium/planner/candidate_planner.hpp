@@ -46,6 +46,9 @@ struct CandidateWorkspace {
     return true;
   }
 
+  /// The world to whose agents the frames of `foresee` belong.
+  [[nodiscard]] World const& predicted() const { return *world; }
+
   /// Whether the budget lasts for another candidate after `done` of them; it always lasts for the first one.
   template <class Budget>
   [[nodiscard]] bool goes_on(Budget& clock, std::size_t done) {
@@ -109,14 +112,17 @@ struct CandidateReport : PlannerReport<World, Memory> {
 ///   candidate.
 /// - `drive(view, memory, dt, workspace)`: the plan for the next `dt` [s] by the chosen candidate, and the memory then.
 ///   It brakes if none is chosen.
-/// - `foresee(view, memory, workspace)`: the frames of all agents, now and after each `step`, if ego drives on so.
+/// - `foresee(view, memory, workspace, candidate)`: the frames of all agents, now and after each `step`, if ego drives
+///   that candidate; without one, if it drives as chosen.
 /// - `entry(view, workspace, candidate)`: the candidate in words, its score, and why it may not be driven.
 template <class P, class View>
 concept CandidatePlanner = requires(P const planner, View const& view, typename P::Memory& memory,
                                     typename P::Workspace& workspace, decltype(P::budget)& clock) {
   { planner.compare(view, memory, workspace, clock) } -> std::same_as<SearchProblem>;
   { planner.drive(view, memory, planner.step, workspace) } -> std::same_as<Plan<View>>;
-  { planner.foresee(view, memory, workspace) } -> std::same_as<decltype(P::Report::course)>;
+  {
+    planner.foresee(view, memory, workspace, std::optional<std::size_t>())
+    } -> std::same_as<decltype(P::Report::course)>;
   { planner.entry(view, workspace, workspace.candidates[0]) } -> std::same_as<PlannerCandidate>;
 };
 
@@ -160,7 +166,7 @@ template <class Planner, class View>
     report.candidates.push_back(planner.entry(view, workspace, candidate));
   report.decidedness = decidedness(report.candidates, report.chosen);
   report.agents = detail::ids_of(*workspace.world);
-  report.course = planner.foresee(view, memory, workspace);
+  report.course = planner.foresee(view, memory, workspace, {});
   report.memory = memory;
   (void)planner.drive(view, report.memory, planner.step, workspace);
   return report;

@@ -11,6 +11,7 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/state.hpp"
 
 namespace cambium {
 
@@ -19,6 +20,18 @@ struct PlannerCandidate {
   std::string name;       ///< what ego would do, in words
   double score = 0.0;     ///< on the planner's own scale; higher is better
   std::string refused{};  ///< why ego may not drive it; empty if it may
+
+  // Filled in by `explain`.
+  std::vector<State> path{};        ///< of ego: now, and step by step to the horizon
+  AgentId because = none<AgentId>;  ///< who is soonest before or after ego in one place; none: nobody within 3 s
+  double time_apart = std::numeric_limits<double>::infinity();  ///< of the two; 0 if they touch [s]
+};
+
+/// One of the ways in which a planner thinks that another agent may go on. The probabilities of an agent's add up to 1.
+struct Alternative {
+  AgentId agent = none<AgentId>;
+  double probability = 0.0;
+  State after{};  ///< where it then is
 };
 
 /// What every planner reports: its plan and the reasons. `World` is its prediction world, `Memory` what it remembers
@@ -56,12 +69,22 @@ void is_report(PlannerReport<World, Memory> const&);
 /// {} at first; the `workspace` only holds what is worth reusing, such as buffers. Its budget limits how long it takes
 /// (see `SearchBudget`). Throws `SearchError` if there is nothing to plan, and `ParameterError` if a parameter is out
 /// of range.
+///
+/// `foresee(view, memory, workspace, candidate)`, called after `plan` or `think` with the same arguments, returns what
+/// it expects: the frames of all agents, now and after each step to the horizon, if ego drives that candidate (by its
+/// number), or as the planner has decided. `workspace.predicted()` is the world to which the frames belong.
+/// A planner that expects more than one course of the others may have `alternatives(view, memory, workspace,
+/// duration)`: where they may be after `duration` [s] then, as a list of `Alternative`.
 template <class P, class View>
 concept PlannerModel = BehaviorModel<P> && std::default_initializable<typename P::Memory> &&
     std::default_initializable<typename P::Workspace> &&
     requires(P const planner, View const& view, typename P::Memory const& memory, typename P::Workspace& workspace) {
   detail::is_report(planner.think(view, memory, workspace));
   { planner.think(view, memory, workspace).memory } -> std::convertible_to<typename P::Memory>;
+  {
+    planner.foresee(view, memory, workspace, std::optional<std::size_t>())
+    } -> std::same_as<decltype(P::Report::course)>;
+  workspace.predicted().roster();
 };
 
 /// The lead of the chosen candidate's score over the best of the others that may be driven, as a share of the range of

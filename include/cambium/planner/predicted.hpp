@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "cambium/behavior/heed/conflicts.hpp"
 #include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/core/constants.hpp"
@@ -166,27 +167,59 @@ template <class World>
   return is_parked(view, RoadUser{.agent = view.id(), .s = view.place().s, .front = view.shape().front});
 }
 
-/// Predicts that an agent keeps its speed if it is faster than `others` want to drive, drives steadily, is parked, or
-/// moves beside the lanes, as pedestrians do: nobody slows down or speeds up without a reason. On a lane, the speed is
-/// rounded to a whole m/s, so that small changes of speed do not change the prediction. `learns`: the planner learns
-/// headways, so an agent counts as steady only if nobody ahead hinders it; a follower's speed reveals the gap that it
-/// keeps. O(agents).
+/// How a driver, or the one that it wraps, gives way; null if it does not.
+template <class Driver>
+[[nodiscard]] Conflicts* conflicts_of(Driver& driver) {
+  if constexpr (requires { driver.heeds.template get<Conflicts>(); })
+    return &driver.heeds.template get<Conflicts>();
+  else if constexpr (requires { driver.driver; })
+    return conflicts_of(driver.driver);
+  else
+    return nullptr;
+}
+
+/// What is expected of an agent beyond the model of the others.
+struct Expectations {
+  /// It keeps its speed if it is faster than the others want to drive, drives steadily, is parked, or moves beside the
+  /// lanes, as pedestrians do: nobody slows down or speeds up without a reason. On a lane, the speed is rounded to a
+  /// whole m/s, so that small changes of speed do not change the prediction.
+  bool keeps_speed = true;
+  /// It takes its right of way, whatever ego does, unless it brakes already.
+  bool insists = true;
+  /// The planner learns headways, so an agent counts as steady only if nobody ahead hinders it; a follower's speed
+  /// reveals the gap that it keeps.
+  bool learns = false;
+};
+
+/// Predicts all agents but ego by a driver `others` with these expectations. O(agents).
 template <class World, class Others>
-void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
-  auto* const desired = desired_speed_of(others);
-  if (desired == nullptr) return;
-  double const usual = *desired;
-  auto const range = range_at(type_info<Others>(), &others, desired);
+void expect(World& world, Slot ego, Others const& others, Expectations const& expected) {
+  constexpr double noticeable = 1.0;  // [m/s^2]
+  auto its = others;
+  auto* const desired = desired_speed_of(its);
+  auto* const conflicts = conflicts_of(its);
+  double const usual = desired != nullptr ? *desired : 0.0;
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
     if (slot == ego) continue;
-    bool const is_on_foot = is_beside_lanes(world, slot), stands = !is_on_foot && is_parked(world, slot);
-    if (!is_on_foot && !stands && seen.state.speed <= usual &&
-        !(learns ? likes_its_speed(world, slot) : is_steady(seen)))
-      continue;
-    double const speed = is_on_foot ? seen.state.speed : stands ? 0.0 : std::max(1.0, std::round(seen.state.speed));
-    *desired = std::clamp(speed, range.low, range.high);
-    assume(world, slot, others);
+    bool const is_on_foot = is_beside_lanes(world, slot);
+    bool is_other = false;
+    if (conflicts != nullptr && expected.insists && !is_on_foot) {
+      conflicts->insists = static_cast<double>(seen.acceleration) > -noticeable;
+      is_other = conflicts->insists;
+    }
+    if (desired != nullptr && expected.keeps_speed) {
+      *desired = usual;
+      bool const stands = !is_on_foot && is_parked(world, slot);
+      if (is_on_foot || stands || seen.state.speed > usual ||
+          (expected.learns ? likes_its_speed(world, slot) : is_steady(seen))) {
+        double const speed = is_on_foot ? seen.state.speed : stands ? 0.0 : std::max(1.0, std::round(seen.state.speed));
+        auto const range = range_at(type_info<Others>(), &its, desired);
+        *desired = std::clamp(speed, range.low, range.high);
+        is_other = true;
+      }
+    }
+    if (is_other) assume(world, slot, its);
   }
 }
 
@@ -253,16 +286,17 @@ template <class World>
   return slots;
 }
 
-/// The agents with whom the agent at `ego` has to avoid contact: all but those behind it in the strip of road that it
-/// covers. Keeping clear of ego is their duty. O(agents).
-template <class World>
-void agents_to_avoid(World const& world, Slot ego, std::vector<Slot>& slots) {
+/// The agents with whom the agent at `ego` has to avoid contact: all but those that are behind it in `frame`, in the
+/// strip of road that it covers. Keeping clear of ego is their duty. O(agents).
+template <class Roster, class Frame>
+void agents_to_avoid(Roster const& roster, Frame const& frame, Slot ego, std::vector<Slot>& slots) {
   slots.clear();
-  auto const& state = world.frame().agents[ego].state;
-  double const rear = world.roster().agents[ego].shape.rear;
-  auto const own = box_at(world, ego);
-  for (Slot i{}; index_of(i) < world.size(); ++i) {
-    auto const box = box_at(world, i);
+  auto const& state = frame.agents[ego].state;
+  double const rear = roster.agents[ego].shape.rear;
+  auto const box_of = [&](Slot slot) { return geometry::box_of(roster.agents[slot].shape, frame.agents[slot].state); };
+  auto const own = box_of(ego);
+  for (Slot i{}; index_of(i) < frame.agents.size(); ++i) {
+    auto const box = box_of(i);
     double const aside = own.cos * (box.y - own.y) - own.sin * (box.x - own.x);
     double const ahead = (box.x - state.x) * own.cos + (box.y - state.y) * own.sin;
     bool const beside = std::abs(aside) > own.half_width + box.half_width;

@@ -106,6 +106,7 @@ struct BasicMacroActions {
   Law law{};
   [[no_unique_address]] Heeding<Heeds...> heeds{};
   LaneChangeCourse course{};
+  double safe_deceleration = 4.0;
 
   static constexpr char const* name = "macro_actions";
   static constexpr char const* summary =
@@ -122,7 +123,9 @@ struct BasicMacroActions {
                   "longer vehicles need more, as in their course"),
         parameter("law", &P::law, "by which it keeps gaps"),
         parameter("heeds", &P::heeds, "what each action heeds besides other road users"),
-        parameter("course", &P::course, "how long a change takes"));
+        parameter("course", &P::course, "how long a change takes"),
+        parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0, 50},
+                  "no change for which the new follower has to brake harder by IDM"));
   }
 
   void check(std::string const& where) const {
@@ -149,7 +152,7 @@ struct BasicMacroActions {
   }
 
   /// Whether action `number` could begin now, with `change` in progress. A change needs a sufficiently long lane of the
-  /// road on that side; a change back can always begin. O(1).
+  /// road on that side, and a follower there who need not brake hard; a change back can always begin. O(1).
   template <class View>
   [[nodiscard]] bool available(View const& view, std::size_t number, LaneChange const& change = {}) const {
     if (number >= size()) return false;
@@ -210,7 +213,20 @@ struct BasicMacroActions {
     if (side == none<CorridorId>) return side;
     auto const there = view.place(side);
     double const least = detail::least_course_length(minimum_remaining, view.shape(), detail::longer_by_front);
-    return lane_end(view, side, there.piece) - there.s < least ? none<CorridorId> : side;
+    if (lane_end(view, side, there.piece) - there.s < least) return none<CorridorId>;
+    return side == change.target || is_free(view, there) ? side : none<CorridorId>;
+  }
+
+  /// Whether nobody is beside it in the other lane, and a follower there need not brake hard.
+  template <class View>
+  [[nodiscard]] bool is_free(View const& view, map::LanePlace const& there) const {
+    Look const look{.merging = heeds.merging(view, Merging::counts)};
+    constexpr double safe_gap = 1.0;  // [m]
+    if (auto const leader = view.ahead(there, look); leader && !(leader->gap > safe_gap)) return false;
+    auto const follower = view.behind(there, look);
+    if (!follower || !is_valid(follower->agent)) return true;
+    IdmLaw const its(Idm{}, std::max(0.0, follower->speed), std::max(Idm{}.desired_speed, follower->speed));
+    return follower->gap > safe_gap && its(follower->gap, std::max(0.0, view.state().speed)) >= -safe_deceleration;
   }
 
   template <class View>

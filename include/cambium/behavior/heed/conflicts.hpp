@@ -63,6 +63,7 @@ struct Conflicts {
   double stop_margin = 1.0;
   double safe_deceleration = 3.0;
   double minor_road_margin = 3.0;
+  bool insists = false;
 
   static constexpr bool heeds_conflicts = true;  ///< agents must not exceed the shapes of the map's conflicts
   static constexpr char const* name = "conflicts";
@@ -87,7 +88,10 @@ struct Conflicts {
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
                   "by which it can stop before a conflict until that is free"),
         parameter("minor_road_margin", &P::minor_road_margin, "s", Range{0, 20},
-                  "more before one that goes first, for a driver that comes from a minor road"));
+                  "more before one that goes first, for a driver that comes from a minor road"),
+        parameter("insists", &P::insists,
+                  "does not let those through who have to let it go first, unless they stand in its way: a planner's "
+                  "worst case"));
   }
 
   struct Memory {
@@ -411,6 +415,8 @@ struct Conflicts {
       if (gap > 0.0 || splits) return Claim::free;
     }
     if (own_is_in) return Claim::free;
+    if (insists && conflict.right_of_way == map::RightOfWay::first && !(is_in && user.speed < standing_speed))
+      return Claim::free;
     auto const section = view.section(user, conflict, large, own.is_large, own.may_meet_large);
     other.place = section ? section->place_to_wait(user.front, detail::lets_go(view, conflict.other_light))
                           : zone.other_begin - reach.front;

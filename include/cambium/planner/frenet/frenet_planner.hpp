@@ -85,7 +85,7 @@ struct FrenetPlanner {
     /// Steps the world for `time` [s] in steps of `length` [s].
     void predict_others(double time, double length) {
       auto& predicted = *this->world;
-      agents_to_avoid(predicted, this->ego, to_avoid);
+      agents_to_avoid(predicted.roster(), this->start, this->ego, to_avoid);
       auto const steps = static_cast<std::size_t>(std::max(1L, std::lround(time / length)));
       frames.resize(steps + 1);
       boxes.clear();
@@ -241,12 +241,14 @@ struct FrenetPlanner {
   }
 
   template <class View>
-  [[nodiscard]] auto foresee(View const& view, Memory const&, Workspace const& workspace) const {
+  [[nodiscard]] auto foresee(View const& view, Memory const&, Workspace const& workspace,
+                             std::optional<std::size_t> candidate) const {
     auto course = workspace.frames;
+    if (!candidate) candidate = workspace.chosen;
     replace_course(*workspace.world, workspace.ego, course, [&](std::size_t k) {
       double const time = static_cast<double>(k) * step;
-      return workspace.chosen ? state_at(view, workspace.candidates[*workspace.chosen], time).state
-                              : brake(view, time).trajectory.back();
+      return candidate ? state_at(view, workspace.candidates[*candidate], time).state
+                       : brake(view, time).trajectory.back();
     });
     return course;
   }

@@ -133,6 +133,7 @@ struct Mcts {
   double range = 50.0;
   double cooperation = 0.5;
   BeliefParameters belief{};
+  bool others_insist = true;
 
   static constexpr char const* name = "mcts";
   static constexpr char const* summary =
@@ -155,7 +156,9 @@ struct Mcts {
         parameter("range", &P::range, "m", non_negative, "agents farther away do not choose"),
         parameter("cooperation", &P::cooperation, "-", Range{0, 1},
                   "weight of the others' rewards and costs in an agent's own"),
-        parameter("belief", &P::belief, "how it learns about the others if there are hypotheses about them"));
+        parameter("belief", &P::belief, "how it learns about the others if there are hypotheses about them"),
+        parameter("others_insist", &P::others_insist,
+                  "those who go first and do not brake yet are expected to go on, whatever ego does"));
   }
 
   void check(std::string const& where) const {
@@ -193,6 +196,35 @@ struct Mcts {
     return report;
   }
 
+  /// See `PlannerModel`. After a candidate that is not the best, all drive on without a manoeuvre.
+  template <class View>
+  [[nodiscard]] auto foresee(View const&, Memory const&, Workspace& workspace,
+                             std::optional<std::size_t> candidate) const {
+    return workspace.course(candidate);
+  }
+
+  /// The hypotheses about those of whom it learns, each as if it held for all, see `PlannerModel`.
+  template <class View>
+  [[nodiscard]] std::vector<Alternative> alternatives(View const&, Memory const&, Workspace& workspace,
+                                                      double duration) const requires learns {
+    std::vector<Alternative> all;
+    auto& domain = workspace.domain();
+    auto const& world = domain.world();
+    for (std::size_t number = 0; number < others.hypotheses(); ++number) {
+      auto state = workspace.decided();
+      for (auto const& unknown : domain.unknowns()) others.assume(*memory_at(state.frame, unknown.slot), number, 0.5);
+      double const end = world.time() + duration;
+      while (state.frame.time < end - same_time) domain.advance(state, std::min(domain.dt(), end - state.frame.time));
+      for (auto const& unknown : domain.unknowns()) {
+        auto const& then = state.frame.agents[unknown.slot].state;
+        all.push_back({world.roster().agents[unknown.slot].id,
+                       unknown.belief.probability(number),
+                       {then.time, then.x, then.y, then.heading, then.speed}});
+      }
+    }
+    return all;
+  }
+
  private:
   [[nodiscard]] static CourseMemory& course_of(Memory& memory) {
     if constexpr (learns)
@@ -212,7 +244,8 @@ struct Mcts {
     if (ego) {
       slots.push_back(*ego);
       world.template memory<typename ActionSet<Actions>::Behavior>(view.id()) = course_of(memory);
-      if (others_keep_speed) detail::expect_to_keep_speed(world, *ego, others, learns);
+      detail::expect(world, *ego, others,
+                     {.keeps_speed = others_keep_speed, .insists = others_insist, .learns = learns});
       if (most_agents > 1) let_others_choose(world, slots);
     }
     double const weight = most_agents > 1 ? cooperation : 0.0;
@@ -231,7 +264,9 @@ struct Mcts {
       if (is_slow_by_choice(world, slot) || detail::moves_across(world.frame().agents[slot]) ||
           detail::is_beside_lanes(world, slot))
         continue;
-      world.set_behavior(world.roster().agents[slot].id, ActionSet<Actions>::behavior(actions));
+      auto its = ActionSet<Actions>::behavior(actions);
+      if (auto* const conflicts = detail::conflicts_of(its)) conflicts->insists = others_insist;
+      world.set_behavior(world.roster().agents[slot].id, its);
       slots.push_back(slot);
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -118,10 +119,22 @@ class MctsWorkspace {
   }
   [[nodiscard]] Domain& domain() { return search().domain(); }
 
+  /// The world to whose agents the frames of `play` belong. Precondition: a search has been run.
+  [[nodiscard]] World const& predicted() const { return trees_.searches()[0].domain().world(); }
+
+  /// The state from which the agents go on with what they have decided.
+  [[nodiscard]] typename Domain::State decided() {
+    auto state = domain().root();
+    auto const& result = trees_.result();
+    if (result.variation.size() >= result.agents) domain().choose(state, {result.variation.data(), result.agents});
+    return state;
+  }
+
   /// Plays the principal variation until the time `end` [s]; if it is shorter, all agents then drive on without a
-  /// manoeuvre. Calls `f(frame)` after each step of the search, and at `end`.
+  /// manoeuvre. Calls `f(frame)` after each step of the search, and at `end`. With a `first` decision of ego, the
+  /// number of an action at the root, all drive on without a manoeuvre after that, unless it is the best.
   template <class F>
-  void play(double end, F&& f) {
+  void play(double end, F&& f, std::optional<std::size_t> first = {}) {
     auto& domain = this->domain();
     auto const& result = trees_.result();
     auto const agents = domain.agents();
@@ -131,9 +144,11 @@ class MctsWorkspace {
     for (std::size_t step = 0; state_.frame.time < end - same_time; ++step) {
       if (auto const hold = static_cast<std::size_t>(domain.hold()); step % hold == 0) {
         auto const decision = step / hold;
+        bool const goes_on = !first || *first == result.best[0] || decision == 0;
+        bool const is_known = goes_on && (decision + 1) * agents <= result.variation.size();
         for (std::size_t k = 0; k < agents; ++k)
-          joint_[k] = (decision + 1) * agents <= result.variation.size() ? result.variation[decision * agents + k]
-                                                                         : domain.policy_action(state_, k, none);
+          joint_[k] = is_known ? result.variation[decision * agents + k] : domain.policy_action(state_, k, none);
+        if (decision == 0 && first) joint_[0] = result.of(0)[*first].action;
         domain.choose(state_, joint_);
       }
       // `end` may lie between two steps. The course may bend there: take a shorter step instead of interpolating.
@@ -185,10 +200,18 @@ class MctsWorkspace {
     }
     report.chosen = report.result.best[0];
     report.decidedness = std::max(0.0, report.result.choice(0).share - second);
-    report.course.push_back(world.frame());
-    play(world.time() + search().parameters().horizon * domain.hold() * domain.dt(),
-         [&](auto const& frame) { report.course.push_back(frame); });
+    report.course = course({});
     return report;
+  }
+
+  /// The frames of all agents, now and after each step to the horizon; `first`: see `play`.
+  [[nodiscard]] std::vector<typename World::FrameType> course(std::optional<std::size_t> first) {
+    auto const& domain = this->domain();
+    std::vector frames{domain.world().frame()};
+    play(
+        domain.world().time() + search().parameters().horizon * domain.hold() * domain.dt(),
+        [&](auto const& frame) { frames.push_back(frame); }, first);
+    return frames;
   }
 
  private:

@@ -109,7 +109,7 @@ class TrafficDomain {
                                     std::span<Action> out) requires detail::ListsChoices<Actions> {
     return in_world(state, [&] {
       auto const& memory = *std::get_if<behavior_index>(&world_.frame().agents[slots_[agent]].memory);
-      return Set::list(actions_, typename World::View(world_, slots_[agent]), memory, out);
+      return Set::list(actions_, world_.observe(slots_[agent]), memory, out);
     });
   }
 
@@ -268,6 +268,8 @@ class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> 
     unknowns_.assign(unknowns.begin(), unknowns.end());
     hypotheses_ = hypotheses;
   }
+
+  [[nodiscard]] std::span<Unknown const> unknowns() const { return unknowns_; }
 
   void sample_root(State& state, RandomStream& random) const {
     constexpr auto index = PredictionWorld::Behaviors::template index<Others>;

@@ -104,7 +104,8 @@ struct TrafficReward {
 
   template <class World>
   [[nodiscard]] Judgement judge(World& world, Slot slot, double dt) const {
-    switch (course_end(world, slot, Collision{}, heeds_road)) {
+    switch (course_end(
+        world, slot, [](World const& judged, Slot own) { return Collision{}.in_last_step(judged, own); }, heeds_road)) {
       case CourseEnd::none:
         break;
       case CourseEnd::over:

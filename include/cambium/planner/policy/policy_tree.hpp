@@ -167,6 +167,7 @@ struct PolicyCost {
   double safety{};      ///< share of the time with unsafe gaps, plus collisions and leaving the road
   double navigation{};  ///< mean urgency of lane changes, see `LaneChangeUrgency`
   double terms{};       ///< negative sum of the planner's `terms`
+  double courtesy{};    ///< mean of how hard others brake, see `OthersBraking` [m^2/s^4]
 };
 
 /// How a `PolicyTreePlanner` weighs the parts of the cost, and what counts as a safe gap.
@@ -181,6 +182,8 @@ struct PolicyWeights {
   double reaction_time = 0.5;
   double braking = 4.0;
   double minimum_gap = 1.0;
+  double courtesy = 0.1;
+  double clearance = 0.3;
 
   static constexpr char const* name = "policy_weights";
   static constexpr char const* summary =
@@ -202,7 +205,10 @@ struct PolicyWeights {
                   "a scenario less likely than this, relative to all keeping their lanes, counts in the mean only"),
         parameter("reaction_time", &P::reaction_time, "s", Range{0, 10}, "of the follower, in a safe gap"),
         parameter("braking", &P::braking, "m/s^2", Range{0.1, 50}, "deceleration of both vehicles, in a safe gap"),
-        parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "left at standstill, in a safe gap"));
+        parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "left at standstill, in a safe gap"),
+        parameter("courtesy", &P::courtesy, "s^4/m^2", non_negative, "weight of how hard others brake"),
+        parameter("clearance", &P::clearance, "m", Range{0, 10},
+                  "a smaller distance to others counts as a collision, unless it begins so"));
   }
 
   /// Gap [m] with which a follower at `speed` can stop behind a leader that brakes from `leader_speed` [m/s].
@@ -213,7 +219,8 @@ struct PolicyWeights {
 
   /// The weighted sum of the parts.
   [[nodiscard]] double total(PolicyCost const& cost) const {
-    return efficiency * cost.efficiency + safety * cost.safety + navigation * cost.navigation + cost.terms;
+    return efficiency * cost.efficiency + safety * cost.safety + navigation * cost.navigation +
+           courtesy * cost.courtesy + cost.terms;
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,6 +63,7 @@ struct PolicyTreePlanner {
 
   struct Workspace : CandidateWorkspace<World, PolicyBranch> {
     bool has_goal = false;
+    double clearance{};  ///< a smaller distance to others counts as a collision [m]
     std::vector<IntentionBranch> intentions;
   };
 
@@ -76,6 +78,7 @@ struct PolicyTreePlanner {
   double range = 60.0;
   Budget budget{};
   Own terms{};
+  bool others_insist = true;
 
   static constexpr char const* name = "policy_tree_planner";
   static constexpr char const* summary =
@@ -96,7 +99,9 @@ struct PolicyTreePlanner {
                   "number of nearest others whose intentions are simulated"),
         parameter("range", &P::range, "m", non_negative, "agents farther away keep their lanes"),
         parameter("budget", &P::budget, "how many sequences are simulated, the ongoing action first"),
-        parameter("terms", &P::terms, "evaluators whose sum over a sequence is deducted from its cost"));
+        parameter("terms", &P::terms, "evaluators whose sum over a sequence is deducted from its cost"),
+        parameter("others_insist", &P::others_insist,
+                  "those who go first and do not brake yet are expected to go on, whatever ego does"));
   }
 
   void check(std::string const& where) const { detail::refuse_costs(terms, where); }
@@ -121,10 +126,12 @@ struct PolicyTreePlanner {
     auto const intended = Semantic::intended(others);
     if (!workspace.predict(view, actions, intended)) return SearchProblem::not_in_world;
     if constexpr (Semantic::drives) {
-      detail::expect_to_keep_speed(*workspace.world, workspace.ego, intended, false);
+      detail::expect(*workspace.world, workspace.ego, intended, {.insists = others_insist});
       workspace.start = workspace.world->frame();
     }
     workspace.has_goal = view.has_goal();
+    bool const is_close = Collision{weights.clearance}(*workspace.world, workspace.ego);
+    workspace.clearance = is_close ? 0.0 : weights.clearance;
     set_intentions(workspace);
     auto& branches = workspace.candidates;
     auto const now = ongoing(memory);
@@ -149,10 +156,36 @@ struct PolicyTreePlanner {
   }
 
   template <class View>
-  [[nodiscard]] auto foresee(View const&, Memory const& memory, Workspace& workspace) const {
+  [[nodiscard]] auto foresee(View const&, Memory const& memory, Workspace& workspace,
+                             std::optional<std::size_t> candidate) const {
     std::vector course{workspace.start};
-    (void)simulate(workspace, memory, workspace.candidates[*workspace.chosen].sequence, nullptr, &course);
+    auto const& branch = workspace.candidates[candidate.value_or(*workspace.chosen)];
+    (void)simulate(workspace, memory, branch.sequence, nullptr, &course);
     return course;
+  }
+
+  /// The intentions of those that may deviate, see `PlannerModel`.
+  template <class View>
+  [[nodiscard]] std::vector<Alternative> alternatives(View const&, Memory const& memory, Workspace& workspace,
+                                                      double duration) const {
+    std::vector<Alternative> all;
+    auto const& agents = workspace.world->roster().agents;
+    auto const add = [&](Slot slot, IntentionBranch const* deviation, double probability) {
+      std::vector course{workspace.start};
+      (void)simulate(workspace, memory, workspace.candidates[*workspace.chosen].sequence, deviation, &course);
+      auto const k = static_cast<std::size_t>(std::lround(duration / step));
+      auto const& then = course[std::min(k, course.size() - 1)].agents[slot].state;
+      all.push_back({agents[slot].id, probability, {then.time, then.x, then.y, then.heading, then.speed}});
+    };
+    for (auto at = workspace.intentions.begin(); at != workspace.intentions.end();) {
+      auto const end = std::find_if(at, workspace.intentions.end(), [&](auto const& i) { return i.slot != at->slot; });
+      double sum = 0.0;
+      for (auto i = at; i != end; ++i) sum += i->probability;
+      double const scale = std::max(1.0, sum);
+      add(at->slot, nullptr, 1.0 - sum / scale);
+      for (; at != end; ++at) add(at->slot, &*at, at->probability / scale);
+    }
+    return all;
   }
 
   /// "keep_gap for 2 s, then change_left 0".
@@ -248,6 +281,7 @@ struct PolicyTreePlanner {
       branch.mean.safety += odds * cost.safety;
       branch.mean.navigation += odds * cost.navigation;
       branch.mean.terms += odds * cost.terms;
+      branch.mean.courtesy += odds * cost.courtesy;
       sum += odds;
     };
     add(nullptr, 1.0);
@@ -257,7 +291,8 @@ struct PolicyTreePlanner {
         double const p = std::min(other.probability, most);
         add(&other, p / (1.0 - p));
       }
-    for (auto* part : {&branch.mean.efficiency, &branch.mean.safety, &branch.mean.navigation, &branch.mean.terms})
+    for (auto* part : {&branch.mean.efficiency, &branch.mean.safety, &branch.mean.navigation, &branch.mean.terms,
+                       &branch.mean.courtesy})
       *part /= sum;
     branch.expected = weights.total(branch.mean);
     branch.worst = std::max(branch.worst, branch.expected);
@@ -294,7 +329,9 @@ struct PolicyTreePlanner {
     begin(workspace, memory, sequence.first, deviation);
     choose_before(0);
     workspace.simulate(steps, step, course, [&](int k) {
-      auto const end = course_end(world, workspace.ego);
+      auto const end = course_end(world, workspace.ego, [&](World const& judged, Slot own_slot) {
+        return Collision{workspace.clearance}.in_last_step(judged, own_slot);
+      });
       auto const own = terms.judge(world, workspace.ego, step);
       cost.terms -= own.reward;
       if (end == CourseEnd::collision || end == CourseEnd::off_road) {  // the earlier, the worse
@@ -334,6 +371,7 @@ struct PolicyTreePlanner {
                         (rear && rear->gap < weights.safe_gap(rear->speed, speed));
     cost.safety += unsafe ? share : 0.0;
     cost.navigation += share * LaneChangeUrgency{}(world, workspace.ego);
+    if (weights.courtesy > 0.0) cost.courtesy += share * OthersBraking{}(world, workspace.ego);
   }
 };
 

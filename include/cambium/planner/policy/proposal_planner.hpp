@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -179,7 +180,7 @@ struct ProposalPlanner {
     auto simulated = driver;
     simulated.lateral.leaves_room = driver.lateral.leaves_room && lane_changes;
     if (!workspace.predict(view, simulated, others)) return SearchProblem::not_in_world;
-    agents_to_avoid(*workspace.world, workspace.ego, workspace.to_avoid);
+    agents_to_avoid(workspace.world->roster(), workspace.start, workspace.ego, workspace.to_avoid);
     double const urgency_here = LaneChangeUrgency{}.at(view, view.place());
     auto const propose_at = [&](double offset, CorridorId towards, bool left) {
       double const urgency_there = is_valid(towards) ? LaneChangeUrgency{}.at(view, view.place(towards)) : urgency_here;
@@ -218,11 +219,12 @@ struct ProposalPlanner {
   }
 
   template <class View>
-  [[nodiscard]] auto foresee(View const& view, Memory const& memory, Workspace& workspace) const {
+  [[nodiscard]] auto foresee(View const& view, Memory const& memory, Workspace& workspace,
+                             std::optional<std::size_t> candidate) const {
     std::vector course{workspace.start};
-    auto again = workspace.candidates[workspace.best];
+    auto again = workspace.candidates[candidate.value_or(workspace.best)];
     simulate(workspace, again, memory, &course);
-    if (!workspace.chosen)
+    if (!candidate && !workspace.chosen)
       replace_course(*workspace.world, workspace.ego, course, [&](std::size_t k) {
         auto after = memory;
         return brake(view, after, static_cast<double>(k) * step, workspace).trajectory.back();
@@ -310,11 +312,11 @@ struct ProposalPlanner {
                                                       memory_then.lateral.change.target == proposal.towards);
   }
 
-  /// Whether ego touches an object or one that it has to avoid, whoever is to blame.
+  /// Whether ego touches an object, or touched one that it has to avoid in the last step, whoever is to blame.
   [[nodiscard]] static bool collides(World const& world, Slot ego, std::vector<Slot> const& to_avoid) {
-    auto const own = box_at(world, ego);
+    auto const own = motion_at(world, ego);
     return AtFaultCollision{}.among(world, ego, {}) || std::ranges::any_of(to_avoid, [&](Slot other) {
-             return in_traffic(world, other) && geometry::intersects(own, box_at(world, other));
+             return in_traffic(world, other) && geometry::intersects(own, motion_at(world, other));
            });
   }
 

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "cambium/benchmark/run_result.hpp"
+#include "cambium/core/constants.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/core/portable_math.hpp"
+#include "cambium/planner/planner_model.hpp"
+#include "cambium/world/frame.hpp"
+
+namespace cambium::detail {
+
+/// Compares what the planner of a run expects of the others with what they then do. Once a second it is asked about
+/// those within 50 m: where they will be after 1, 3 and 5 s, and if it thinks of several ways, how likely each is.
+class PredictionJudge {
+ public:
+  /// Whether the planner is to be asked at this time [s].
+  [[nodiscard]] bool asks(double time) const { return time >= next_ - same_time; }
+
+  /// Notes the frames that it expects, of agents whose ids are those of `roster`.
+  template <class Roster, class Frame>
+  void note(Roster const& roster, AgentId ego, std::vector<Frame> const& course) {
+    auto const own = roster.slot_of(ego);
+    if (!own || course.empty()) return;
+    double const now = course.front().time;
+    next_ = now + interval;
+    auto const& from = course.front().agents[*own].state;
+    for (std::size_t span = 0; span < spans.size(); ++span) {
+      double const time = now + spans[span];
+      auto const then = std::ranges::find_if(course, [&](auto const& frame) { return frame.time > time - same_time; });
+      if (then == course.end()) continue;  // it does not look as far ahead
+      for (Slot slot{}; index_of(slot) < roster.agents.size(); ++slot) {
+        auto const& start = course.front().agents[slot];
+        auto const& end = then->agents[slot];
+        if (slot == *own || start.status != AgentStatus::driving || end.status != AgentStatus::driving ||
+            portable::hypot(start.state.x - from.x, start.state.y - from.y) > range)
+          continue;
+        courses_.push_back({then->time, span, roster.agents[slot].id, end.state.x, end.state.y});
+      }
+    }
+  }
+
+  /// How far ahead alternatives are asked for [s].
+  static constexpr double span_of_alternatives = 3.0;
+
+  void note(std::vector<Alternative> const& all, double time) {
+    if (!all.empty()) alternatives_.push_back({time + span_of_alternatives, all});
+  }
+
+  /// Compares what was expected for the present time.
+  template <class World>
+  void compare(World const& world) {
+    double const now = world.time();
+    std::erase_if(courses_, [&](Expected const& expected) {
+      if (expected.time > now + same_time) return false;
+      if (auto const seen = place(world, expected.agent, expected.time); seen.is_known) {
+        sums_[expected.span] += portable::hypot(seen.x - expected.x, seen.y - expected.y);
+        ++counts_[expected.span];
+      }
+      return true;
+    });
+    std::erase_if(alternatives_, [&](Alternatives const& asked) {
+      if (asked.time > now + same_time) return false;
+      for (auto const& one : asked.all) {
+        auto const is_first = [&](Alternative const& other) { return other.agent == one.agent; };
+        if (&*std::ranges::find_if(asked.all, is_first) == &one) weigh(world, asked, one.agent);
+      }
+      return true;
+    });
+  }
+
+  void write(RunResult& result) const {
+    auto const mean = [](double sum, std::size_t count) {
+      return count > 0 ? sum / static_cast<double>(count) : RunResult::undefined;
+    };
+    result.prediction_error_1s = mean(sums_[0], counts_[0]);
+    result.prediction_error_3s = mean(sums_[1], counts_[1]);
+    result.prediction_error_5s = mean(sums_[2], counts_[2]);
+    result.prediction_brier = mean(brier_, weighed_);
+  }
+
+ private:
+  static constexpr double interval = 1.0, range = 50.0;  // [s], [m]
+  static constexpr std::array<double, 3> spans{1.0, 3.0, 5.0};
+
+  struct Expected {
+    double time;
+    std::size_t span;
+    AgentId agent;
+    double x, y;
+  };
+  struct Alternatives {
+    double time;
+    std::vector<Alternative> all;
+  };
+  struct Seen {
+    bool is_known = false;
+    double x{}, y{};
+  };
+
+  /// Where an agent was at `time`, shortly before the present.
+  template <class World>
+  [[nodiscard]] static Seen place(World const& world, AgentId id, double time) {
+    auto const slot = world.roster().slot_of(id);
+    if (!slot || world.frame().agents[*slot].status != AgentStatus::driving) return {};
+    auto const& state = world.frame().agents[*slot].state;
+    auto const along = portable::sin_cos(state.heading);
+    double const back = state.speed * (world.time() - time);
+    return {true, state.x - back * along.cos, state.y - back * along.sin};
+  }
+
+  /// Adds the Brier score (Brier 1950) of the alternatives of `agent`: the nearest to where it is has come true.
+  template <class World>
+  void weigh(World const& world, Alternatives const& asked, AgentId agent) {
+    auto const seen = place(world, agent, asked.time);
+    if (!seen.is_known) return;
+    double nearest = std::numeric_limits<double>::infinity();
+    Alternative const* came_true = nullptr;
+    for (auto const& one : asked.all) {
+      double const off = portable::hypot(one.after.x - seen.x, one.after.y - seen.y);
+      if (one.agent != agent || off >= nearest) continue;
+      nearest = off;
+      came_true = &one;
+    }
+    for (auto const& one : asked.all)
+      if (one.agent == agent) {
+        double const off = one.probability - (&one == came_true ? 1.0 : 0.0);
+        brier_ += off * off;
+      }
+    ++weighed_;
+  }
+
+  double next_ = 0.0;
+  std::vector<Expected> courses_{};
+  std::vector<Alternatives> alternatives_{};
+  std::array<double, 3> sums_{};
+  std::array<std::size_t, 3> counts_{};
+  double brier_ = 0.0;
+  std::size_t weighed_ = 0;
+};
+
+}  // namespace cambium::detail
