@@ -343,7 +343,7 @@ struct AtFaultCollision {
     constexpr double depth = 0.01;  // [m]
     double const way = longest_way(a, b);
     double time = 0.0;
-    while (time < 1.0) {
+    for (int step = 0; time < 1.0 && step < 10'000; ++step) {
       double const gap = geometry::separation(a.at(time), b.at(time));
       if (gap <= 0.0) break;
       time = std::min(1.0, time + (gap + depth) / way);

@@ -87,16 +87,19 @@ class MovingBox {
 namespace detail {
 
 /// Whether `gap(t)`, a lower bound of a distance [m] that changes by at most `way` [m] per unit of `t`, falls to 0 for
-/// a `t` from 0 to 1. Conservative advancement (Mirtich 1996), backwards: from the end, it advances by the gap.
+/// a `t` from 0 to 1. Conservative advancement (Mirtich 1996), backwards: from the end, it advances by the gap. Where
+/// that is not settled in 10 000 steps, for motions of kilometres, it counts as contact.
 template <class Gap>
 [[nodiscard]] bool closes(double way, Gap const& gap) {
   constexpr double overlap = 0.02;  // advances so much further: what it misses is half as deep
-  for (double t = 1.0;;) {
+  double t = 1.0;
+  for (int step = 0; step < 10'000; ++step) {
     double const here = gap(t);
     if (here <= 0.0) return true;
     if (!(here <= t * way)) return false;
     t = std::max(0.0, t - (here + overlap) / way);
   }
+  return true;
 }
 
 }  // namespace detail
