@@ -388,6 +388,6 @@ TEST_CASE("kept trees of earlier versions load") {
   CHECK(files >= 2);
   CHECK(for_each_golden("tree_1", [&](std::string const& path) {
           Tree parts;
-          says("law, heeds, course); read it with the program that wrote it", [&] { load_snapshot(path, parts); });
+          says("its struct 'macro_actions' was saved with other fields", [&] { load_snapshot(path, parts); });
         }) == 2);
 }
