@@ -134,29 +134,28 @@ struct Timed : Behavior {
 
   template <class View, class... More>
   [[nodiscard]] Plan<View> plan(View const& view, MemoryOf<Behavior>& memory, double dt, More&... workspace) const {
-    [[maybe_unused]] auto const before = memory;
+    constexpr bool is_planner = requires { typename Behavior::Report; };
+    std::optional<MemoryOf<Behavior>> before;  // where the planner is to be asked
+    if constexpr (is_planner)
+      if (clock != nullptr && is_ego && clock->predictions.asks(view.time())) before = memory;
     auto const begin = std::chrono::steady_clock::now();
     auto plan = Behavior::plan(view, memory, dt, workspace...);
     if (clock == nullptr) return plan;
     clock->add(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count(), is_ego);
-    if constexpr (sizeof...(More) == 1)
-      if (is_ego && plan.status != PlanStatus::failed && clock->predictions.asks(view.time()))
-        (note_prediction(view, before, workspace), ...);
+    if constexpr (is_planner)
+      if (before && plan.status != PlanStatus::failed) note_prediction(view, *before, workspace...);
     return plan;
   }
 
  private:
-  /// Notes what the planner expects of the others, if it is one.
+  /// Notes what a planner expects of the others.
   template <class View, class Workspace>
   void note_prediction(View const& view, MemoryOf<Behavior> const& before, Workspace& workspace) const {
     Behavior const& planner = *this;
-    constexpr bool foresees = requires { planner.foresee(view, before, workspace, std::optional<std::size_t>()); };
-    if constexpr (foresees) {
-      auto& judge = clock->predictions;
-      judge.note(workspace.predicted().roster(), view.id(), planner.foresee(view, before, workspace, {}));
-      if constexpr (requires { planner.alternatives(view, before, workspace, 1.0); })
-        judge.note(planner.alternatives(view, before, workspace, judge.span_of_alternatives), view.time());
-    }
+    auto& judge = clock->predictions;
+    judge.note(workspace.predicted().roster(), view.id(), planner.foresee(view, before, workspace, {}));
+    if constexpr (requires { planner.alternatives(view, before, workspace, 1.0); })
+      judge.note(planner.alternatives(view, before, workspace, judge.span_of_alternatives), view.time());
   }
 };
 

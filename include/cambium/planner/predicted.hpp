@@ -199,14 +199,16 @@ void expect(World& world, Slot ego, Others const& others, Expectations const& ex
   auto* const desired = desired_speed_of(its);
   auto* const conflicts = conflicts_of(its);
   double const usual = desired != nullptr ? *desired : 0.0;
+  auto const range = desired != nullptr ? range_at(type_info<Others>(), &its, desired) : Range{};
+  bool const usually_insists = conflicts != nullptr && conflicts->insists;
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
     if (slot == ego) continue;
     bool const is_on_foot = is_beside_lanes(world, slot);
     bool is_other = false;
-    if (conflicts != nullptr && expected.insists && !is_on_foot) {
-      conflicts->insists = static_cast<double>(seen.acceleration) > -noticeable;
-      is_other = conflicts->insists;
+    if (conflicts != nullptr && expected.insists) {
+      is_other = !is_on_foot && static_cast<double>(seen.acceleration) > -noticeable;
+      conflicts->insists = usually_insists || is_other;
     }
     if (desired != nullptr && expected.keeps_speed) {
       *desired = usual;
@@ -214,7 +216,6 @@ void expect(World& world, Slot ego, Others const& others, Expectations const& ex
       if (is_on_foot || stands || seen.state.speed > usual ||
           (expected.learns ? likes_its_speed(world, slot) : is_steady(seen))) {
         double const speed = is_on_foot ? seen.state.speed : stands ? 0.0 : std::max(1.0, std::round(seen.state.speed));
-        auto const range = range_at(type_info<Others>(), &its, desired);
         *desired = std::clamp(speed, range.low, range.high);
         is_other = true;
       }

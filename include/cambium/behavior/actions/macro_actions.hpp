@@ -152,7 +152,7 @@ struct BasicMacroActions {
   }
 
   /// Whether action `number` could begin now, with `change` in progress. A change needs a sufficiently long lane of the
-  /// road on that side, and a follower there who need not brake hard; a change back can always begin. O(1).
+  /// road on that side, with nobody beside and no follower who would have to brake hard; a change back can always begin.
   template <class View>
   [[nodiscard]] bool available(View const& view, std::size_t number, LaneChange const& change = {}) const {
     if (number >= size()) return false;
