@@ -17,8 +17,8 @@
 /// the globe are not. Errors are relative, in units in the last place; angles are in radians.
 ///
 /// Random numbers take only `log`, `pow` and `fused_exp`, which use explicit fused operations only, so that contraction
-/// cannot change them; they are long, and never inlined. `exp` is six times as fast as `fused_exp` where the compiler
-/// calls a function for a fused operation.
+/// cannot change them; they are long, and never inlined. Where the processor has an instruction for a fused operation,
+/// they take it, also in programs that are compiled without it. `exp` is faster than `fused_exp` in any case.
 namespace cambium::portable {
 
 namespace detail {
@@ -229,19 +229,60 @@ template <class... Rest>
   }
 }
 
-/// `exp` that no compiler contracts; error below 2, or one subnormal step.
-/// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
-CAMBIUM_NOINLINE [[nodiscard]] inline double fused_exp(double x) {
+namespace detail {
+
+/// See `fused_exp`.
+[[nodiscard]] inline double exp_series(double x) {
   constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
   if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN
-  if (x > 710.0) return detail::infinite;
+  if (x > 710.0) return infinite;
   double const k = std::floor(std::fma(x, 0x1.71547652b82fep+0, 0.5));
   double const r = std::fma(-k, ln2_low, std::fma(-k, ln2_high, x));
   double const series =
       fused_polynomial(r, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
                        1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
   double const exp_r = 1.0 + std::fma(r * r, series, r);
-  return detail::scaled(exp_r, static_cast<int>(k));
+  return scaled(exp_r, static_cast<int>(k));
+}
+
+/// See `log`; for normal numbers.
+[[nodiscard]] inline double log_series(double x) {
+  constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // 45 bits: exact times any exponent
+  constexpr double ln2_low = 0x1.ef35793c76730p-45;
+  constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdu;
+  std::uint64_t const shifted = std::bit_cast<std::uint64_t>(x) - sqrt_half;
+  double const exponent = static_cast<double>(static_cast<std::int64_t>(shifted) >> 52);
+  double const m = std::bit_cast<double>((shifted & 0x000fffffffffffffu) + sqrt_half);
+  double const f = (m - 1.0) / (m + 1.0);
+  double const square = f * f;
+  double const twice = 2.0 * f;
+  double const series = fused_polynomial(square, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13, 1.0 / 15,
+                                         1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23);
+  double const log_m = std::fma(twice * square, series, twice);
+  return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
+}
+
+#if defined(__GNUC__) && defined(__x86_64__) && !defined(__FMA__)
+/// The same, bit by bit, by the instruction that most processors have for a fused operation.
+[[gnu::target("fma"), gnu::flatten, gnu::noinline, nodiscard]] inline double exp_by_instruction(double x) {
+  return exp_series(x);
+}
+[[gnu::target("fma"), gnu::flatten, gnu::noinline, nodiscard]] inline double log_by_instruction(double x) {
+  return log_series(x);
+}
+[[nodiscard]] inline bool fuses() { return __builtin_cpu_supports("fma") != 0; }
+#else
+[[nodiscard]] inline double exp_by_instruction(double x) { return exp_series(x); }
+[[nodiscard]] inline double log_by_instruction(double x) { return log_series(x); }
+[[nodiscard]] constexpr bool fuses() { return true; }
+#endif
+
+}  // namespace detail
+
+/// `exp` that no compiler contracts; error below 2, or one subnormal step.
+/// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
+CAMBIUM_NOINLINE [[nodiscard]] inline double fused_exp(double x) {
+  return detail::fuses() ? detail::exp_by_instruction(x) : detail::exp_series(x);
 }
 
 /// x^n with O(log n) multiplications.
@@ -259,19 +300,7 @@ CAMBIUM_NOINLINE [[nodiscard]] inline double log(double x) {
     if (x > 0.0) return x < detail::infinite ? log(x * 0x1p54) - 54.0 * 0x1.62e42fefa39efp-1 : x;
     return x == 0.0 ? -detail::infinite : std::numeric_limits<double>::quiet_NaN();
   }
-  constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // 45 bits: exact times any exponent
-  constexpr double ln2_low = 0x1.ef35793c76730p-45;
-  constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdu;
-  std::uint64_t const shifted = std::bit_cast<std::uint64_t>(x) - sqrt_half;
-  double const exponent = static_cast<double>(static_cast<std::int64_t>(shifted) >> 52);
-  double const m = std::bit_cast<double>((shifted & 0x000fffffffffffffu) + sqrt_half);
-  double const f = (m - 1.0) / (m + 1.0);
-  double const square = f * f;
-  double const twice = 2.0 * f;
-  double const series = fused_polynomial(square, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13, 1.0 / 15,
-                                         1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23);
-  double const log_m = std::fma(twice * square, series, twice);
-  return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
+  return detail::fuses() ? detail::log_by_instruction(x) : detail::log_series(x);
 }
 
 /// x^y for x >= 0, NaN below. For y in [0, 4096), the integer part of y is computed by multiplication. The error grows
