@@ -17,6 +17,7 @@
 #include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
@@ -152,7 +153,8 @@ struct BasicMacroActions {
   }
 
   /// Whether action `number` could begin now, with `change` in progress. A change needs a sufficiently long lane of the
-  /// road on that side, with nobody beside and no follower who would have to brake hard; a change back can always begin.
+  /// road on that side, with nobody beside and no follower who would have to brake hard; a change back can always
+  /// begin.
   template <class View>
   [[nodiscard]] bool available(View const& view, std::size_t number, LaneChange const& change = {}) const {
     if (number >= size()) return false;
@@ -225,8 +227,8 @@ struct BasicMacroActions {
     if (auto const leader = view.ahead(there, look); leader && !(leader->gap > safe_gap)) return false;
     auto const follower = view.behind(there, look);
     if (!follower || !is_valid(follower->agent)) return true;
-    IdmLaw const its(Idm{}, std::max(0.0, follower->speed), std::max(Idm{}.desired_speed, follower->speed));
-    return follower->gap > safe_gap && its(follower->gap, std::max(0.0, view.state().speed)) >= -safe_deceleration;
+    double const speed = std::max(0.0, view.state().speed);
+    return follower->gap > safe_gap && detail::assumed_law(*follower)(follower->gap, speed) >= -safe_deceleration;
   }
 
   template <class View>

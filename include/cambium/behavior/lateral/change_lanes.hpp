@@ -126,8 +126,8 @@ struct ChangeLanes {
   Rule rule{};
   KeepLane keep{};
   Idm others{};
-  Idm trucks{.desired_speed = 23.0, .time_headway = 1.7, .maximum_acceleration = 0.9};
-  double truck_length = 7.5;
+  Idm trucks = detail::assumed_truck;
+  double truck_length = detail::assumed_truck_length;
   double safe_deceleration = 4.0;
   double abort_deceleration = 4.5;
   double safe_gap = 1.0;
@@ -254,8 +254,7 @@ struct ChangeLanes {
 
   /// The car following that this driver assumes of a follower.
   [[nodiscard]] IdmLaw law_of(RoadUser const& who) const {
-    auto const& assumed = who.length() > truck_length ? trucks : others;
-    return IdmLaw(assumed, std::max(0.0, who.speed), std::max(assumed.desired_speed, who.speed));
+    return detail::assumed_law(who, others, trucks, truck_length);
   }
 
   /// Whether a change is safe: all gaps exceed `safe_gap` and nobody has to brake harder than `deceleration` [m/s^2].
