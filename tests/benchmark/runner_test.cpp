@@ -269,7 +269,8 @@ TEST_CASE("a Brier score is that of the alternatives, of which the nearest comes
   auto const at = [&](double x, double probability) {
     return Alternative{id, probability, {.time = 3.0, .x = x, .y = -1.75, .speed = 10.0}};
   };
-  judge.note({at(100.0, 0.2), at(131.0, 0.7), at(150.0, 0.1)}, 0.0);
+  // Two ways end in one place.
+  judge.note({at(100.0, 0.2), at(131.0, 0.3), at(150.0, 0.1), at(130.5, 0.4)}, 0.0);
   RunResult result;
   for (int i = 0; i < 15; ++i) {
     judge.write(result);
@@ -279,6 +280,14 @@ TEST_CASE("a Brier score is that of the alternatives, of which the nearest comes
   }
   judge.write(result);
   CHECK(result.prediction_brier == doctest::Approx(0.2 * 0.2 + 0.3 * 0.3 + 0.1 * 0.1));
+  detail::PredictionJudge certain;
+  certain.note({at(160.0, 0.2), at(160.5, 0.8)}, world.time());
+  for (int i = 0; i < 15; ++i) {
+    REQUIRE(world.step(0.2));
+    certain.compare(world);
+  }
+  certain.write(result);
+  CHECK(std::isnan(result.prediction_brier));  // one way is no bet
 }
 
 TEST_CASE("who leaves the map before its goal has left its way") {

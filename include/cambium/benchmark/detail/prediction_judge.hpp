@@ -85,7 +85,7 @@ class PredictionJudge {
   }
 
  private:
-  static constexpr double interval = 1.0, range = 50.0;  // [s], [m]
+  static constexpr double interval = 1.0, range = 50.0, same_place = 1.0;  // [s], [m]
   static constexpr std::array<double, 3> spans{1.0, 3.0, 5.0};
 
   struct Expected {
@@ -114,24 +114,30 @@ class PredictionJudge {
     return {true, state.x - back * along.cos, state.y - back * along.sin};
   }
 
-  /// Adds the Brier score (Brier 1950) of the alternatives of `agent`: the nearest to where it is has come true.
+  /// Adds the Brier score (Brier 1950) of the ways of `agent`: the nearest to where it is has come true. Alternatives
+  /// that end in the same place are one way; who has only one is not judged.
   template <class World>
   void weigh(World const& world, Alternatives const& asked, AgentId agent) {
     auto const seen = place(world, agent, asked.time);
     if (!seen.is_known) return;
-    double nearest = std::numeric_limits<double>::infinity();
-    Alternative const* came_true = nullptr;
+    std::vector<Alternative> ways;
     for (auto const& one : asked.all) {
-      double const off = portable::hypot(one.after.x - seen.x, one.after.y - seen.y);
-      if (one.agent != agent || off >= nearest) continue;
-      nearest = off;
-      came_true = &one;
+      if (one.agent != agent) continue;
+      auto const same = std::ranges::find_if(ways, [&](Alternative const& way) {
+        return portable::hypot(way.after.x - one.after.x, way.after.y - one.after.y) < same_place;
+      });
+      if (same == ways.end())
+        ways.push_back(one);
+      else
+        same->probability += one.probability;
     }
-    for (auto const& one : asked.all)
-      if (one.agent == agent) {
-        double const off = one.probability - (&one == came_true ? 1.0 : 0.0);
-        brier_ += off * off;
-      }
+    if (ways.size() < 2) return;
+    auto const came_true = std::ranges::min_element(
+        ways, {}, [&](Alternative const& way) { return portable::hypot(way.after.x - seen.x, way.after.y - seen.y); });
+    for (auto way = ways.begin(); way != ways.end(); ++way) {
+      double const off = way->probability - (way == came_true ? 1.0 : 0.0);
+      brier_ += off * off;
+    }
     ++weighed_;
   }
 
