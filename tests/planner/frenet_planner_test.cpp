@@ -75,6 +75,21 @@ TEST_CASE("courses into a vehicle alongside are not valid") {
   }
 }
 
+TEST_CASE("it enters no lane where a follower would have to brake hard") {
+  for (double const speed : {12.0, 19.0}) {
+    CAPTURE(speed);
+    auto world = road(2, 12.0, Frenet{});
+    world.add({.position = {world.state(ego).x - 25.0, -1.75}, .speed = speed, .behavior = ConstantAcceleration{}});
+    for (double const bound : {4.0, 50.0}) {
+      Frenet planner;
+      planner.safe_deceleration = bound;
+      int refused = 0;
+      for (auto const& c : report_of(planner, world).details) refused += c.verdict == FrenetVerdict::follower ? 1 : 0;
+      CHECK((refused > 0) == (speed > 12.0 && bound < 50.0));
+    }
+  }
+}
+
 TEST_CASE("a course that is not finite is not valid, and another one is driven") {
   Frenet planner;
   planner.costs.jerk = 1e308;  // the cost of a course that changes speed or offset overflows

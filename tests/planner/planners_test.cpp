@@ -480,11 +480,13 @@ TEST_CASE_TEMPLATE("with hardly any time it scores one candidate and plans", Pla
 
 TEST_CASE("decidedness is the lead over the next best score as a share of their range") {
   std::vector<PlannerCandidate> candidates{{"a", 1.0}, {"b", 4.0}, {"c", 5.0}, {"d", 9.0, "collision"}};
-  CHECK(decidedness(candidates, 2) == doctest::Approx(0.25));
-  CHECK(decidedness(candidates, 1) == 0.0);
-  CHECK(decidedness(candidates, std::nullopt) == 0.0);
+  auto const any = [](std::size_t) { return true; };
+  CHECK(decidedness(candidates, 2, any) == doctest::Approx(0.25));
+  CHECK(decidedness(candidates, 1, any) == 0.0);
+  CHECK(decidedness(candidates, std::nullopt, any) == 0.0);
+  CHECK(decidedness(candidates, 2, [](std::size_t i) { return i == 0; }) == 1.0);  // "b" begins like "c"
   candidates[1].score = 5.0;
-  CHECK(decidedness(candidates, 2) == 0.0);
+  CHECK(decidedness(candidates, 2, any) == 0.0);
   candidates[0].refused = candidates[1].refused = "off road";
-  CHECK(decidedness(candidates, 2) == 1.0);
+  CHECK(decidedness(candidates, 2, any) == 1.0);
 }

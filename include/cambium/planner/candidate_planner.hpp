@@ -114,7 +114,8 @@ struct CandidateReport : PlannerReport<World, Memory> {
 ///   It brakes if none is chosen.
 /// - `foresee(view, memory, workspace, candidate)`: the frames of all agents, now and after each `step`, if ego drives
 ///   that candidate; without one, if it drives as chosen.
-/// - `entry(view, workspace, candidate)`: the candidate in words, its score, and why it may not be driven.
+/// - `entry(view, workspace, candidate)`: the candidate in words, its score, and why it may not be driven;
+/// - optionally `begin_alike(a, b)`: whether two candidates are the same for now, see `PlannerReport::decidedness`.
 template <class P, class View>
 concept CandidatePlanner = requires(P const planner, View const& view, typename P::Memory& memory,
                                     typename P::Workspace& workspace, decltype(P::budget)& clock) {
@@ -164,7 +165,13 @@ template <class Planner, class View>
   report.is_cut_short = workspace.is_cut_short;
   for (auto const& candidate : workspace.candidates)
     report.candidates.push_back(planner.entry(view, workspace, candidate));
-  report.decidedness = decidedness(report.candidates, report.chosen);
+  report.decidedness = decidedness(report.candidates, report.chosen, [&](std::size_t number) {
+    auto const& all = workspace.candidates;
+    if constexpr (requires { planner.begin_alike(all[number], all[number]); })
+      return !planner.begin_alike(all[number], all[*report.chosen]);
+    else
+      return true;
+  });
   report.agents = detail::ids_of(*workspace.world);
   report.course = planner.foresee(view, memory, workspace, {});
   report.memory = memory;

@@ -42,7 +42,8 @@ struct PlannerReport {
 
   std::vector<PlannerCandidate> candidates;
   std::optional<std::size_t> chosen;  ///< among the candidates; empty if none may be driven: ego brakes
-  /// How clearly the choice wins, from 0 (another candidate is as good) to 1 (nothing comes close).
+  /// How clearly the choice wins, from 0 (another candidate is as good) to 1 (nothing comes close). Candidates that
+  /// begin with the same action, as in a policy tree, are one choice.
   double decidedness = 0.0;
   bool is_cut_short = false;                      ///< the budget ended before all candidates were scored
   std::vector<typename World::FrameType> course;  ///< all agents as planned, step by step from now to the horizon
@@ -87,19 +88,21 @@ concept PlannerModel = BehaviorModel<P> && std::default_initializable<typename P
   workspace.predicted().roster();
 };
 
-/// The lead of the chosen candidate's score over the best of the others that may be driven, as a share of the range of
-/// all these scores. 1 if there is no other, 0 if none is chosen. O(candidates).
-[[nodiscard]] inline double decidedness(std::span<PlannerCandidate const> candidates,
-                                        std::optional<std::size_t> chosen) {
+/// The lead of the chosen candidate's score over the best of its rivals that may be driven, as a share of the range of
+/// all scores. 1 if there is no rival, 0 if none is chosen. `is_rival(i)`: whether to drive candidate i would be
+/// another decision. O(candidates).
+template <class IsRival>
+[[nodiscard]] double decidedness(std::span<PlannerCandidate const> candidates, std::optional<std::size_t> chosen,
+                                 IsRival const& is_rival) {
   if (!chosen) return 0.0;
   double const score = candidates[*chosen].score;
   double second = -std::numeric_limits<double>::infinity(), lowest = score;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (i == *chosen || !candidates[i].refused.empty()) continue;
-    second = std::max(second, candidates[i].score);
+    if (is_rival(i)) second = std::max(second, candidates[i].score);
     lowest = std::min(lowest, candidates[i].score);
   }
-  if (second < lowest) return 1.0;  // there is no other
+  if (second < lowest) return 1.0;  // there is no rival
   double const range = std::max(score, second) - lowest;
   return range > 0.0 ? std::clamp((score - second) / range, 0.0, 1.0) : 0.0;
 }

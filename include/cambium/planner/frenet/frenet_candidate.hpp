@@ -77,7 +77,8 @@ enum class FrenetVerdict : std::uint8_t {
   gap,
   road,
   collision,
-  stop  ///< it passes a place where it has to stop by the rules
+  stop,     ///< it passes a place where it has to stop by the rules
+  follower  ///< one behind in the lane beside would have to brake hard
 };
 
 /// What a candidate failed by, in words.
@@ -92,7 +93,8 @@ enum class FrenetVerdict : std::uint8_t {
                                    "gap",
                                    "off road",
                                    "collision",
-                                   "red light, stop sign or right of way"};
+                                   "red light, stop sign or right of way",
+                                   "follower brakes"};
   return names[static_cast<std::size_t>(verdict)];
 }
 

@@ -19,6 +19,7 @@
 #include "cambium/behavior/lateral/lane_change.hpp"
 #include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/stable_sort.hpp"
@@ -133,6 +134,7 @@ struct FrenetPlanner {
   Own terms{};
   Signals signals{};
   Conflicts conflicts{};
+  double safe_deceleration = 4.0;
 
   static constexpr bool heeds_conflicts = true;
   static constexpr char const* name = "frenet_planner";
@@ -167,7 +169,9 @@ struct FrenetPlanner {
         parameter("budget", &P::budget, "how many courses are checked, the cheapest first"),
         parameter("terms", &P::terms, "evaluators whose sum over a course is deducted from its cost"),
         parameter("signals", &P::signals, "how it stops at lights and stop signs"),
-        parameter("conflicts", &P::conflicts, "how it gives way"));
+        parameter("conflicts", &P::conflicts, "how it gives way"),
+        parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0, 50},
+                  "it enters no lane where a follower would have to brake harder"));
   }
 
   void check(std::string const& where) const {
@@ -207,7 +211,8 @@ struct FrenetPlanner {
     bool const all = has_terms || workspace.shows_all;
     auto& best = workspace.chosen;
     for (std::size_t i = 0; i < candidates.size() && (all || !best) && workspace.goes_on(clock, i); ++i) {
-      candidates[i].verdict = verdict(view, candidates[i], workspace);
+      if (candidates[i].verdict == FrenetVerdict::unchecked)
+        candidates[i].verdict = verdict(view, candidates[i], workspace);
       if (candidates[i].verdict != FrenetVerdict::valid) continue;
       if constexpr (has_terms) {
         candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
@@ -331,6 +336,7 @@ struct FrenetPlanner {
       stop = at.s + workspace.free_way;
       fastest = std::min(fastest, std::sqrt(2.0 * comfortable_deceleration * workspace.free_way));
     }
+    auto const known = may_enter(view, number) ? FrenetVerdict::unchecked : FrenetVerdict::follower;
     for (double const duration : durations) {
       set_targets(view, number, at, fastest, stop, duration, workspace);
       for (auto const& target : workspace.targets)
@@ -343,8 +349,18 @@ struct FrenetPlanner {
                 frenet_candidate(start, target, offset, duration, wanted, low_speed, costs, tight));
             c.corridor = number;
             c.cost += route;
+            c.verdict = known;
           }
     }
+  }
+
+  /// Whether no follower on a corridor has to brake hard for ego. Who is beside it is left to the check for collisions.
+  template <class View>
+  [[nodiscard]] bool may_enter(View const& view, CorridorId number) const {
+    if (number == view.place().corridor) return true;
+    auto const rear = view.behind(view.place(number), {.merging = Merging::by_rule});
+    if (!rear || !is_valid(rear->agent) || !(rear->gap > 0.0)) return true;
+    return detail::assumed_law(*rear)(rear->gap, std::max(0.0, view.state().speed)) >= -safe_deceleration;
   }
 
   /// Behind whom it would drive on a corridor. Those that merge in a junction are no leaders: where they are, and where

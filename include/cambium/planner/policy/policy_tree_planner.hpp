@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <boost/container/static_vector.hpp>
@@ -139,9 +141,11 @@ struct PolicyTreePlanner {
     for (auto const& sequence : policy_sequences({all.data(), all.size()}, now, static_cast<std::size_t>(layers))) {
       if (!is_available(view, sequence.first, memory)) continue;
       if (!workspace.goes_on(clock, branches.size())) break;
+      bool const compares_all = workspace.shows_all || !std::is_same_v<Own, Terms<>> || !workspace.chosen;
+      double const limit = compares_all ? infinite : branches[*workspace.chosen].cost;
       auto& branch = branches.emplace_back();
       branch.sequence = sequence;
-      weigh(workspace, memory, branch);
+      weigh(workspace, memory, branch, limit);
       if (sequence.first != now) branch.cost += weights.change;
       if (!std::isfinite(branch.cost)) return SearchProblem::not_finite;
       if (!workspace.chosen || branch.cost < branches[*workspace.chosen].cost) workspace.chosen = branches.size() - 1;
@@ -160,7 +164,7 @@ struct PolicyTreePlanner {
                              std::optional<std::size_t> candidate) const {
     std::vector course{workspace.start};
     auto const& branch = workspace.candidates[candidate.value_or(*workspace.chosen)];
-    (void)simulate(workspace, memory, branch.sequence, nullptr, &course);
+    (void)simulate(workspace, memory, branch.sequence, nullptr, &course, never);
     return course;
   }
 
@@ -172,7 +176,7 @@ struct PolicyTreePlanner {
     auto const& agents = workspace.world->roster().agents;
     auto const add = [&](Slot slot, IntentionBranch const* deviation, double probability) {
       std::vector course{workspace.start};
-      (void)simulate(workspace, memory, workspace.candidates[*workspace.chosen].sequence, deviation, &course);
+      (void)simulate(workspace, memory, workspace.candidates[*workspace.chosen].sequence, deviation, &course, never);
       auto const k = static_cast<std::size_t>(std::lround(duration / step));
       auto const& then = course[std::min(k, course.size() - 1)].agents[slot].state;
       all.push_back({agents[slot].id, probability, {then.time, then.x, then.y, then.heading, then.speed}});
@@ -188,6 +192,11 @@ struct PolicyTreePlanner {
     return all;
   }
 
+  /// See `CandidatePlanner`.
+  [[nodiscard]] static bool begin_alike(PolicyBranch const& a, PolicyBranch const& b) {
+    return a.sequence.first == b.sequence.first;
+  }
+
   /// "keep_gap for 2 s, then change_left 0".
   template <class View>
   [[nodiscard]] PlannerCandidate entry(View const&, Workspace const&, PolicyBranch const& branch) const {
@@ -201,6 +210,9 @@ struct PolicyTreePlanner {
   }
 
  private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity(), rounding = 1e-9;
+  static constexpr auto never = [](PolicyCost const&) { return false; };
+
   [[nodiscard]] bool is_change(std::uint8_t choice, int side) const {
     return ActionSet<Actions>::action(actions, choice).kind ==
            (side > 0 ? MacroAction::Kind::change_left : MacroAction::Kind::change_right);
@@ -265,38 +277,56 @@ struct PolicyTreePlanner {
   }
 
   /// Simulates a branch with all others in their lanes, and then with each deviation of one of them; weighs the costs
-  /// by the odds of each scenario.
-  void weigh(Workspace& workspace, Memory const& memory, PolicyBranch& branch) const {
+  /// by the odds of each scenario. It breaks off once the cost must be above `limit`; then the cost that it sets is,
+  /// too.
+  void weigh(Workspace& workspace, Memory const& memory, PolicyBranch& branch, double limit) const {
     auto const& sequence = branch.sequence;
-    auto const matters = [&](IntentionBranch const& other) {
-      return other.side == 0 || is_change(sequence.first, other.side) || is_change(sequence.then, other.side);
+    auto const odds_of = [&](IntentionBranch const& other) {
+      constexpr double most = 0.99;  // keeps the odds finite
+      bool const matters =
+          other.side == 0 || is_change(sequence.first, other.side) || is_change(sequence.then, other.side);
+      double const p = matters ? std::min(other.probability, most) : 0.0;
+      return p / (1.0 - p);
     };
-    double sum = 0.0;
+    double all_odds = 1.0;
+    for (auto const& other : workspace.intentions) all_odds += odds_of(other);
+    double sum = 0.0;  // of costs times odds
     auto const add = [&](IntentionBranch const* deviation, double odds) {
-      auto const cost = simulate(workspace, memory, sequence, deviation, nullptr);
+      bool const is_likely = deviation == nullptr || odds >= weights.least_odds;
+      auto const exceeds = [&](PolicyCost const& so_far) {
+        double const total = weights.total(so_far), expected = (sum + odds * total) / all_odds;
+        double const worst = std::max({branch.worst, expected, is_likely ? total : 0.0});
+        branch.cost = mix(expected, worst);
+        return branch.cost > limit * (1.0 + rounding);
+      };
+      auto const cost = simulate(workspace, memory, sequence, deviation, nullptr, exceeds);
+      if (exceeds(cost)) return false;
       double const total = weights.total(cost);
-      if (branch.scenarios++ == 0) branch.worst = total;
-      if (odds >= weights.least_odds) branch.worst = std::max(branch.worst, total);
+      ++branch.scenarios;
+      if (is_likely) branch.worst = std::max(branch.worst, total);
       branch.mean.efficiency += odds * cost.efficiency;
       branch.mean.safety += odds * cost.safety;
       branch.mean.navigation += odds * cost.navigation;
       branch.mean.terms += odds * cost.terms;
       branch.mean.courtesy += odds * cost.courtesy;
-      sum += odds;
+      sum += odds * total;
+      return true;
     };
-    add(nullptr, 1.0);
-    constexpr double most = 0.99;  // keeps the odds finite
+    branch.worst = -infinite;
+    bool goes_on = add(nullptr, 1.0);
     for (auto const& other : workspace.intentions)
-      if (other.probability > 0.0 && matters(other)) {
-        double const p = std::min(other.probability, most);
-        add(&other, p / (1.0 - p));
-      }
+      if (double const odds = odds_of(other); goes_on && odds > 0.0) goes_on = add(&other, odds);
+    if (!goes_on) return;
     for (auto* part : {&branch.mean.efficiency, &branch.mean.safety, &branch.mean.navigation, &branch.mean.terms,
                        &branch.mean.courtesy})
-      *part /= sum;
+      *part /= all_odds;
     branch.expected = weights.total(branch.mean);
     branch.worst = std::max(branch.worst, branch.expected);
-    branch.cost = (1.0 - weights.worst_case) * branch.expected + weights.worst_case * branch.worst;
+    branch.cost = mix(branch.expected, branch.worst);
+  }
+
+  [[nodiscard]] double mix(double expected, double worst) const {
+    return (1.0 - weights.worst_case) * expected + weights.worst_case * worst;
   }
 
   /// Resets the prediction world to its start, with ego about to do `action`, and one agent about to deviate if given.
@@ -314,10 +344,12 @@ struct PolicyTreePlanner {
       world.template memory<Actions>(agents[deviation->slot].id).choose(static_cast<std::size_t>(deviation->intention));
   }
 
-  /// The cost of a simulation to the end of ego's course; with a `course`, see `simulate` of its workspace.
+  /// The cost of a simulation to the end of ego's course, or until that `exceeds` a limit; with a `course`, see
+  /// `simulate` of its workspace.
+  template <class Exceeds>
   [[nodiscard]] PolicyCost simulate(Workspace& workspace, Memory const& memory, PolicySequence const& sequence,
-                                    IntentionBranch const* deviation,
-                                    std::vector<typename World::FrameType>* course) const {
+                                    IntentionBranch const* deviation, std::vector<typename World::FrameType>* course,
+                                    Exceeds const& exceeds) const {
     auto& world = *workspace.world;
     auto const id = world.roster().agents[workspace.ego].id;
     int const steps = std::max(1, static_cast<int>(std::lround(layers * layer_duration / step)));
@@ -341,6 +373,7 @@ struct PolicyTreePlanner {
       }
       if (end != CourseEnd::none || own.ends || (workspace.has_goal && world.reached_goal(workspace.ego))) return false;
       add_step(workspace, id, 1.0 / steps, cost);
+      if (exceeds(cost)) return false;
       choose_before(k + 1);
       return true;
     });
