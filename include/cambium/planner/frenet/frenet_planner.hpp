@@ -17,9 +17,9 @@
 #include "cambium/behavior/heed/signals.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/lateral/lane_change.hpp"
-#include "cambium/behavior/law/lane_reach.hpp"
+#include "cambium/behavior/law/acc.hpp"
 #include "cambium/behavior/law/idm.hpp"
-#include "cambium/behavior/law/lane_option.hpp"
+#include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/core/described.hpp"
 #include "cambium/core/stable_sort.hpp"
@@ -208,19 +208,9 @@ struct FrenetPlanner {
     for (auto& candidate : candidates)
       if (std::isnan(candidate.cost)) candidate.cost = std::numeric_limits<double>::infinity();
     detail::stable_sort(candidates, &FrenetCandidate::cost);
-    bool const all = has_terms || workspace.shows_all;
-    auto& best = workspace.chosen;
-    for (std::size_t i = 0; i < candidates.size() && (all || !best) && workspace.goes_on(clock, i); ++i) {
-      if (candidates[i].verdict == FrenetVerdict::unchecked)
-        candidates[i].verdict = verdict(view, candidates[i], workspace);
-      if (candidates[i].verdict != FrenetVerdict::valid) continue;
-      if constexpr (has_terms) {
-        candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
-        if (!std::isfinite(candidates[i].cost)) candidates[i].verdict = FrenetVerdict::not_finite;
-        if (candidates[i].verdict != FrenetVerdict::valid) continue;
-      }
-      if (!best || candidates[i].cost < candidates[*best].cost) best = i;
-    }
+    check(view, limits.clearance, workspace, clock);
+    if (!workspace.chosen && limits.clearance > 0.0)
+      check(view, 0.0, workspace, clock);  // better close than braking on
     return SearchProblem::none;
   }
 
@@ -283,6 +273,26 @@ struct FrenetPlanner {
     FrenetMotion<double> frenet;
   };
 
+  /// Checks the courses that are not known to be invalid with this clearance [m], and chooses among them.
+  template <class View>
+  void check(View const& view, double clearance, Workspace& workspace, Budget& clock) const {
+    auto& candidates = workspace.candidates;
+    bool const all = has_terms || workspace.shows_all;
+    auto& best = workspace.chosen;
+    for (std::size_t i = 0; i < candidates.size() && (all || !best) && workspace.goes_on(clock, i); ++i) {
+      auto& known = candidates[i].verdict;
+      if (known == FrenetVerdict::unchecked || known == FrenetVerdict::collision)
+        known = verdict(view, candidates[i], clearance, workspace);
+      if (known != FrenetVerdict::valid) continue;
+      if constexpr (has_terms) {
+        candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
+        if (!std::isfinite(candidates[i].cost)) known = FrenetVerdict::not_finite;
+        if (known != FrenetVerdict::valid) continue;
+      }
+      if (!best || candidates[i].cost < candidates[*best].cost) best = i;
+    }
+  }
+
   /// How far it may drive before it has to stop by the rules [m].
   template <class View>
   [[nodiscard]] double free_way(View const& view, Memory& memory, double dt) const {
@@ -325,17 +335,21 @@ struct FrenetPlanner {
     double const closeness = lanes > 0 ? std::clamp(1.0 - way / (lanes * route_horizon), 0.0, 1.0) : 0.0;
     double const route = costs.route * lanes * (1.0 + costs.route_urgency * closeness);
     double const wanted = std::min(desired_speed, corridor.speed_limit_at(at.s));
+    constexpr double late = 2.0;  // who slows down early is too slow for the lane beside
     double fastest = wanted;
     auto stop = std::numeric_limits<double>::infinity();
     if (std::isfinite(end) && is_dead_end(corridor, end)) {
       stop = end - view.shape().front - minimum_gap - lanes * room_to_change;
       if (!corridor.reaches_destination)
-        fastest = std::min(wanted, std::sqrt(2.0 * comfortable_deceleration * std::max(0.0, stop - at.s)));
+        fastest = std::min(wanted, std::sqrt(2.0 * late * comfortable_deceleration * std::max(0.0, stop - at.s)));
     }
     if (at.s + workspace.free_way < stop) {
       stop = at.s + workspace.free_way;
       fastest = std::min(fastest, std::sqrt(2.0 * comfortable_deceleration * workspace.free_way));
     }
+    if (lanes > 0)
+      fastest = std::min(fastest, speed_to_change(view, corridor.pieces[at.piece], lanes) +
+                                      std::max(0.0, 1.0 - 2.0 * closeness) * desired_speed);
     auto const known = may_enter(view, number) ? FrenetVerdict::unchecked : FrenetVerdict::follower;
     for (double const duration : durations) {
       set_targets(view, number, at, fastest, stop, duration, workspace);
@@ -354,13 +368,36 @@ struct FrenetPlanner {
     }
   }
 
-  /// Whether no follower on a corridor has to brake hard for ego. Who is beside it is left to the check for collisions.
+  /// How fast to drive at most in order to change lanes soon [m/s]: as fast as the next one in the lane beside that
+  /// leads to the destination, or around one that is parked; and slower than those who are beside. From `piece` it
+  /// needs `lanes` changes. Infinite if nobody is there.
+  template <class View, class Piece>
+  [[nodiscard]] double speed_to_change(View const& view, Piece const& piece, int lanes) const {
+    constexpr double close = 0.3, slower = 3.0;  // [s], [m/s]
+    double const enough = minimum_gap + close * std::max(0.0, view.state().speed);
+    auto fastest = std::numeric_limits<double>::infinity();
+    for (auto const side : {piece.left, piece.right}) {
+      if (side == none<CorridorId>) continue;
+      auto const there = view.place(side);
+      if (lanes_to_destination(view.road(), side, there.piece) >= lanes) continue;
+      Look const look{.merging = Merging::by_rule};
+      if (auto const next = view.ahead(there, look); next && next->gap < look_ahead && !detail::is_parked(view, *next))
+        fastest = std::min(fastest, next->speed - (next->gap < enough ? slower : 0.0));
+      if (auto const rear = view.behind(there, look); rear && rear->gap < enough)
+        fastest = std::min(fastest, rear->speed - slower);
+    }
+    return std::max(0.0, fastest);
+  }
+
+  /// Whether no follower on a corridor has to brake hard for ego, if it follows by `Acc`. Who is beside it is left to
+  /// the check for collisions.
   template <class View>
   [[nodiscard]] bool may_enter(View const& view, CorridorId number) const {
     if (number == view.place().corridor) return true;
     auto const rear = view.behind(view.place(number), {.merging = Merging::by_rule});
     if (!rear || !is_valid(rear->agent) || !(rear->gap > 0.0)) return true;
-    return detail::assumed_law(*rear)(rear->gap, std::max(0.0, view.state().speed)) >= -safe_deceleration;
+    double const speed = std::max(0.0, rear->speed), desired = std::max(desired_speed, speed);
+    return Acc{}.acceleration(speed, desired, {rear->gap, std::max(0.0, view.state().speed)}) >= -safe_deceleration;
   }
 
   /// Behind whom it would drive on a corridor. Those that merge in a junction are no leaders: where they are, and where
@@ -375,11 +412,15 @@ struct FrenetPlanner {
   template <class View>
   void set_targets(View const& view, CorridorId number, map::LanePlace const& at, double fastest, double stop,
                    double duration, Workspace& workspace) const {
+    constexpr double rounding = 0.1;  // [m/s]
     auto& targets = workspace.targets;
     targets.clear();
     for (double const share : speed_shares)
       targets.push_back({std::numeric_limits<double>::infinity(), share * fastest});
-    if (auto const leader = leader_of(view, number)) targets.push_back(behind(workspace, *leader, at.s, duration));
+    if (auto const leader = leader_of(view, number)) {
+      auto const place = behind(workspace, *leader, at.s, duration);
+      if (place.speed <= fastest + rounding) targets.push_back(place);
+    }
     if (std::isfinite(stop)) targets.push_back({stop, 0.0});
   }
 
@@ -415,7 +456,7 @@ struct FrenetPlanner {
   }
 
   template <class View>
-  [[nodiscard]] FrenetVerdict verdict(View const& view, FrenetCandidate const& candidate,
+  [[nodiscard]] FrenetVerdict verdict(View const& view, FrenetCandidate const& candidate, double clearance,
                                       Workspace const& workspace) const {
     if (!std::isfinite(candidate.cost)) return FrenetVerdict::not_finite;
     if (candidate.kind == FrenetCandidate::Kind::keep_speed && comes_too_near(view, candidate, workspace))
@@ -436,8 +477,8 @@ struct FrenetPlanner {
            OncomingLane::enters(view.map(), view.road(), record.lane, record.state, view.shape())))
         return FrenetVerdict::road;
       auto box = geometry::box_of(view.shape(), driven.state);
-      box.half_length += limits.clearance;
-      box.half_width += limits.clearance;
+      box.half_length += clearance;
+      box.half_width += clearance;
       if (workspace.touched(box, k)) return FrenetVerdict::collision;
     }
     return FrenetVerdict::valid;

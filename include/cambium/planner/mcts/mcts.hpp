@@ -261,8 +261,8 @@ struct Mcts {
   void let_others_choose(PredictionWorld& world, std::vector<Slot>& slots) const {
     for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
       if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over
-      if (is_slow_by_choice(world, slot) || detail::moves_across(world.frame().agents[slot]) ||
-          detail::is_beside_lanes(world, slot))
+      if (is_slow_by_choice(world, slot) || detail::is_parked(world, slot) ||
+          detail::moves_across(world.frame().agents[slot]) || detail::is_beside_lanes(world, slot))
         continue;
       auto its = ActionSet<Actions>::behavior(actions);
       if (auto* const conflicts = detail::conflicts_of(its)) conflicts->insists = others_insist;
