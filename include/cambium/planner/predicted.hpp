@@ -178,6 +178,26 @@ template <class Driver>
     return nullptr;
 }
 
+/// How those who merge into its lane count for a driver, or for the one that it wraps; null if it cannot say.
+template <class Driver>
+[[nodiscard]] Merging* merging_of(Driver& driver) {
+  if constexpr (requires { driver.lateral.keep.merging; })
+    return &driver.lateral.keep.merging;
+  else if constexpr (requires { driver.lateral.merging; })
+    return &driver.lateral.merging;
+  else if constexpr (requires { driver.driver; })
+    return merging_of(driver.driver);
+  else
+    return nullptr;
+}
+
+/// Makes a driver take its right of way, and open no gap for those who merge into its lane.
+template <class Driver>
+void let_insist(Driver& driver) {
+  if (auto* const conflicts = conflicts_of(driver)) conflicts->insists = true;
+  if (auto* const merging = merging_of(driver)) *merging = Merging::ignored;
+}
+
 /// What is expected of an agent beyond the model of the others.
 struct Expectations {
   /// It keeps its speed if it is faster than the others want to drive, drives steadily, is parked, or moves beside the
@@ -195,23 +215,20 @@ struct Expectations {
 template <class World, class Others>
 void expect(World& world, Slot ego, Others const& others, Expectations const& expected) {
   constexpr double noticeable = 1.0;  // [m/s^2]
-  auto its = others;
-  auto* const desired = desired_speed_of(its);
-  auto* const conflicts = conflicts_of(its);
-  double const usual = desired != nullptr ? *desired : 0.0;
-  auto const range = desired != nullptr ? range_at(type_info<Others>(), &its, desired) : Range{};
-  bool const usually_insists = conflicts != nullptr && conflicts->insists;
+  auto insistent = others;
+  let_insist(insistent);
+  auto const* const usual_speed = desired_speed_of(others);
+  auto const range = usual_speed != nullptr ? range_at(type_info<Others>(), &others, usual_speed) : Range{};
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
     if (slot == ego) continue;
     bool const is_on_foot = is_beside_lanes(world, slot);
-    bool is_other = false;
-    if (conflicts != nullptr && expected.insists) {
-      is_other = !is_on_foot && static_cast<double>(seen.acceleration) > -noticeable;
-      conflicts->insists = usually_insists || is_other;
-    }
+    bool const insists = expected.insists && !is_on_foot && static_cast<double>(seen.acceleration) > -noticeable;
+    auto its = insists ? insistent : others;
+    auto* const desired = desired_speed_of(its);
+    bool is_other = insists;
     if (desired != nullptr && expected.keeps_speed) {
-      *desired = usual;
+      double const usual = *desired;
       bool const stands = !is_on_foot && is_parked(world, slot);
       if (is_on_foot || stands || seen.state.speed > usual ||
           (expected.learns ? likes_its_speed(world, slot) : is_steady(seen))) {

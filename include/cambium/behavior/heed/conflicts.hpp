@@ -113,8 +113,8 @@ struct Conflicts {
 
   /// In junctions the right of way decides whether the driver follows those who merge into its lane.
   template <class View>
-  [[nodiscard]] static Merging merging(View const&, Merging) {
-    return Merging::by_rule;
+  [[nodiscard]] static Merging merging(View const&, Merging counted) {
+    return counted == Merging::counts ? Merging::by_rule : counted;
   }
 
   template <class View, class Limits>

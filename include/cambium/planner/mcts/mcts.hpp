@@ -265,7 +265,7 @@ struct Mcts {
           detail::moves_across(world.frame().agents[slot]) || detail::is_beside_lanes(world, slot))
         continue;
       auto its = ActionSet<Actions>::behavior(actions);
-      if (auto* const conflicts = detail::conflicts_of(its)) conflicts->insists = others_insist;
+      if (others_insist) detail::let_insist(its);
       world.set_behavior(world.roster().agents[slot].id, its);
       slots.push_back(slot);
     }
