@@ -163,7 +163,7 @@ TEST_CASE("a driver keeps its leader's gap although a vehicle that merges is nea
 }
 
 TEST_CASE_TEMPLATE("vehicles that merge count, or are ignored, as the rules say", Behavior, cb::IdmClassic,
-                   cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil) {
+                   cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::UrbanDriver) {
   MergingRoad const merge;
   auto const acceleration = [&](bool has_ramp, cb::Merging merging) {
     Behavior behavior;

@@ -294,3 +294,31 @@ TEST_CASE("a policy tree stops at a red light, and may drive by the rules") {
   CHECK(way > 45.0);
   CHECK(way < 60.0);
 }
+
+TEST_CASE("whoever drives on a through lane is expected to open no gap, unless it brakes or goodwill is expected") {
+  using Predicting = World<BehaviorSet<UrbanDriver, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+  auto const site = find_merging_site(support::own_map("merging.xodr"));
+  auto const& through =
+      *std::ranges::find_if(site.entrances, [](auto const& e) { return e.merges() && !e.gives_up_lane; });
+  auto const acceleration = [&](bool insists, double before) {
+    Predicting world(site.map);
+    auto const add = [&](MergingSite::Entrance const& from, double way, Predicting::Behavior const& behavior) {
+      auto const road = map::build_road_corridor(*site.map, from.route);
+      auto const pose = road->corridors[road->main].center.pose(from.merge_at - way);
+      return world.add({.position = pose.position(),
+                        .heading = pose.heading,
+                        .speed = 12.0,
+                        .behavior = behavior,
+                        .route = from.route});
+    };
+    auto const other = add(through, 60.0, UrbanDriver{}),
+               own = add(site.entrances[site.ramp], 36.0, ConstantAcceleration{});
+    world.set_state(other, world.state(other), Reroute::no, before);
+    detail::expect(world, *world.roster().slot_of(own), UrbanDriver{}, {.keeps_speed = false, .insists = insists});
+    for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
+    return world.record(other).action.acceleration;
+  };
+  double const polite = acceleration(false, 0.0);
+  CHECK(acceleration(true, 0.0) > polite + 0.3);
+  CHECK(acceleration(true, -2.0) == doctest::Approx(acceleration(false, -2.0)));
+}

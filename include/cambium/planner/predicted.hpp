@@ -204,7 +204,7 @@ struct Expectations {
   /// lanes, as pedestrians do: nobody slows down or speeds up without a reason. On a lane, the speed is rounded to a
   /// whole m/s, so that small changes of speed do not change the prediction.
   bool keeps_speed = true;
-  /// It takes its right of way, whatever ego does, unless it brakes already.
+  /// It takes its right of way and opens no gap for those who merge, whatever ego does, unless it brakes already.
   bool insists = true;
   /// The planner learns headways, so an agent counts as steady only if nobody ahead hinders it; a follower's speed
   /// reveals the gap that it keeps.

@@ -113,8 +113,14 @@ struct Conflicts {
 
   /// In junctions the right of way decides whether the driver follows those who merge into its lane.
   template <class View>
-  [[nodiscard]] static Merging merging(View const&, Merging counted) {
-    return counted == Merging::counts ? Merging::by_rule : counted;
+  [[nodiscard]] static Merging merging(View const& view, Merging counted) {
+    if (counted == Merging::counts) return Merging::by_rule;
+    if (counted != Merging::ignored) return counted;
+    auto const& feeders = view.corridor().feeders;
+    double const front = view.place().s + view.shape().front;
+    auto const next =
+        std::ranges::find_if(feeders, [&](map::Feeder const& feeder) { return feeder.free_until > front; });
+    return next != feeders.end() && next->by_rule ? Merging::by_rule : counted;
   }
 
   template <class View, class Limits>
