@@ -90,6 +90,36 @@ TEST_CASE("it enters no lane where a follower would have to brake hard") {
   }
 }
 
+TEST_CASE("beside somebody too close for its clearance it drives on, and does not brake") {
+  for (double const clearance : {0.3, 0.1}) {
+    CAPTURE(clearance);
+    auto world = road(2, 12.0, Frenet{});
+    world.add({.position = {40.0, -3.25}, .speed = 12.0, .behavior = ConstantAcceleration{}});  // 0.2 m beside
+    Frenet planner;
+    planner.limits.clearance = clearance;
+    auto const report = report_of(planner, world);
+    REQUIRE(report.chosen);
+    CHECK((report.details[*report.chosen].verdict == FrenetVerdict::close) == (clearance > 0.2));
+    CHECK(report.candidates[*report.chosen].refused.empty());
+    CHECK(report.course[1].agents[0].state.speed > 11.0);
+  }
+}
+
+TEST_CASE("it slows down for a gap in the lane that it needs") {
+  auto const fastest = [](bool is_beside) {
+    auto world = road(2, 12.0, Frenet{});
+    world.add({.position = {140.0, -5.25}, .speed = 0.0, .behavior = ConstantAcceleration{}});  // parked
+    if (is_beside) world.add({.position = {38.0, -1.75}, .speed = 12.0, .behavior = ConstantAcceleration{}});
+    auto const here = world.observe(ego).place().corridor;
+    double result = 0.0;
+    for (auto const& c : report_of(Frenet{}, world).details)
+      if (c.corridor == here) result = std::max(result, c.speed);
+    return result;
+  };
+  CHECK(fastest(false) == doctest::Approx(15.0));
+  CHECK(fastest(true) == doctest::Approx(9.0));  // 3 m/s slower than the one beside
+}
+
 TEST_CASE("a course that is not finite is not valid, and another one is driven") {
   Frenet planner;
   planner.costs.jerk = 1e308;  // the cost of a course that changes speed or offset overflows

@@ -300,6 +300,17 @@ TEST_CASE("a search that fails forgets its tree") {
   CHECK(planner.think(world.observe(ego), report.memory, workspace).result.kept_nodes == 0);
 }
 
+TEST_CASE("one that is parked does not choose") {
+  auto planner = quick(Search{}, 50);
+  planner.most_agents = 4;
+  for (double const speed : {0.0, 12.0}) {
+    Sim world(support::straight_road(2, 600.0), {.seed = 1});
+    world.add({.position = {60, -5.25}, .speed = 12, .behavior = planner});
+    world.add({.position = {90, -5.25}, .speed = speed, .behavior = IdmClassic{}});
+    CHECK(report_of(planner, world).choosing.size() == (speed > 0.0 ? 2 : 1));
+  }
+}
+
 TEST_CASE("an agent whose course is over does not choose, and does not prevent ego from planning") {
   auto world = lane_change<Sim>(0, IdmClassic{});
   auto planner = quick(Search{}, 100);

@@ -26,6 +26,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/planner/planner_model.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 #include "cambium/viewer/record_world.hpp"
 #include "cambium/world/world.hpp"
@@ -134,7 +135,7 @@ struct Timed : Behavior {
 
   template <class View, class... More>
   [[nodiscard]] Plan<View> plan(View const& view, MemoryOf<Behavior>& memory, double dt, More&... workspace) const {
-    constexpr bool is_planner = requires { typename Behavior::Report; };
+    constexpr bool is_planner = PlannerModel<Behavior, View>;
     std::optional<MemoryOf<Behavior>> before;  // where the planner is to be asked
     if constexpr (is_planner)
       if (clock != nullptr && is_ego && clock->predictions.asks(view.time())) before = memory;

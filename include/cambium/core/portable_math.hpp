@@ -17,8 +17,9 @@
 /// the globe are not. Errors are relative, in units in the last place; angles are in radians.
 ///
 /// Random numbers take only `log`, `pow` and `fused_exp`, which use explicit fused operations only, so that contraction
-/// cannot change them; they are long, and never inlined. Where the processor has an instruction for a fused operation,
-/// they take it, also in programs that are compiled without it. `exp` is faster than `fused_exp` in any case.
+/// cannot change them; they are long, and never inlined. With g++ and clang on x86-64 they take the processor's
+/// instruction for these where it has one, also in programs that are compiled without. `exp` is faster than
+/// `fused_exp`.
 namespace cambium::portable {
 
 namespace detail {
@@ -263,6 +264,7 @@ namespace detail {
 }
 
 #if defined(__GNUC__) && defined(__x86_64__) && !defined(__FMA__)
+#define CAMBIUM_DETAIL_FUSES_BY_CALLS
 /// The same, bit by bit, by the instruction that most processors have for a fused operation.
 [[gnu::target("fma"), gnu::flatten, gnu::noinline, nodiscard]] inline double exp_by_instruction(double x) {
   return exp_series(x);
@@ -270,11 +272,6 @@ namespace detail {
 [[gnu::target("fma"), gnu::flatten, gnu::noinline, nodiscard]] inline double log_by_instruction(double x) {
   return log_series(x);
 }
-[[nodiscard]] inline bool fuses() { return __builtin_cpu_supports("fma") != 0; }
-#else
-[[nodiscard]] inline double exp_by_instruction(double x) { return exp_series(x); }
-[[nodiscard]] inline double log_by_instruction(double x) { return log_series(x); }
-[[nodiscard]] constexpr bool fuses() { return true; }
 #endif
 
 }  // namespace detail
@@ -282,7 +279,10 @@ namespace detail {
 /// `exp` that no compiler contracts; error below 2, or one subnormal step.
 /// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
 CAMBIUM_NOINLINE [[nodiscard]] inline double fused_exp(double x) {
-  return detail::fuses() ? detail::exp_by_instruction(x) : detail::exp_series(x);
+#ifdef CAMBIUM_DETAIL_FUSES_BY_CALLS
+  if (__builtin_cpu_supports("fma")) return detail::exp_by_instruction(x);
+#endif
+  return detail::exp_series(x);
 }
 
 /// x^n with O(log n) multiplications.
@@ -300,8 +300,12 @@ CAMBIUM_NOINLINE [[nodiscard]] inline double log(double x) {
     if (x > 0.0) return x < detail::infinite ? log(x * 0x1p54) - 54.0 * 0x1.62e42fefa39efp-1 : x;
     return x == 0.0 ? -detail::infinite : std::numeric_limits<double>::quiet_NaN();
   }
-  return detail::fuses() ? detail::log_by_instruction(x) : detail::log_series(x);
+#ifdef CAMBIUM_DETAIL_FUSES_BY_CALLS
+  if (__builtin_cpu_supports("fma")) return detail::log_by_instruction(x);
+#endif
+  return detail::log_series(x);
 }
+#undef CAMBIUM_DETAIL_FUSES_BY_CALLS
 
 /// x^y for x >= 0, NaN below. For y in [0, 4096), the integer part of y is computed by multiplication. The error grows
 /// with |y|, and where y < 0 with |y ln x|; below 1e-13 for |y| <= 40 and x in [0.01, 100].

@@ -191,11 +191,26 @@ template <class Driver>
     return nullptr;
 }
 
-/// Makes a driver take its right of way, and open no gap for those who merge into its lane.
+/// Makes a driver take its right of way whatever others do; with `opens_no_gap`, those who merge into its lane, too.
 template <class Driver>
-void let_insist(Driver& driver) {
+void let_insist(Driver& driver, bool opens_no_gap) {
   if (auto* const conflicts = conflicts_of(driver)) conflicts->insists = true;
-  if (auto* const merging = merging_of(driver)) *merging = Merging::ignored;
+  if (auto* const merging = merging_of(driver); merging != nullptr && opens_no_gap) *merging = Merging::ignored;
+}
+
+/// Whether an agent is on a lane that ends by merging into another.
+template <class World>
+[[nodiscard]] bool gives_up_lane(World const& world, Slot slot) {
+  auto const& at = world.frame().agents[slot].lane;
+  auto const lane = world.roster().agents[slot].road->corridors[at.corridor].pieces[at.piece].lane;
+  return is_valid(lane) && is_valid(world.map().lane(lane).merges_into);
+}
+
+/// Whether an agent shows no sign that it lets others go first: it does not brake.
+template <class Record>
+[[nodiscard]] bool goes_on(Record const& seen) {
+  constexpr double noticeable = 1.0;  // [m/s^2]
+  return static_cast<double>(seen.acceleration) > -noticeable;
 }
 
 /// What is expected of an agent beyond the model of the others.
@@ -204,7 +219,8 @@ struct Expectations {
   /// lanes, as pedestrians do: nobody slows down or speeds up without a reason. On a lane, the speed is rounded to a
   /// whole m/s, so that small changes of speed do not change the prediction.
   bool keeps_speed = true;
-  /// It takes its right of way and opens no gap for those who merge, whatever ego does, unless it brakes already.
+  /// It takes its right of way, whatever ego does, unless it brakes already; nor does it open a gap for those who
+  /// merge, unless its own lane ends.
   bool insists = true;
   /// The planner learns headways, so an agent counts as steady only if nobody ahead hinders it; a follower's speed
   /// reveals the gap that it keeps.
@@ -214,17 +230,15 @@ struct Expectations {
 /// Predicts all agents but ego by a driver `others` with these expectations. O(agents).
 template <class World, class Others>
 void expect(World& world, Slot ego, Others const& others, Expectations const& expected) {
-  constexpr double noticeable = 1.0;  // [m/s^2]
-  auto insistent = others;
-  let_insist(insistent);
   auto const* const usual_speed = desired_speed_of(others);
   auto const range = usual_speed != nullptr ? range_at(type_info<Others>(), &others, usual_speed) : Range{};
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
     if (slot == ego) continue;
     bool const is_on_foot = is_beside_lanes(world, slot);
-    bool const insists = expected.insists && !is_on_foot && static_cast<double>(seen.acceleration) > -noticeable;
-    auto its = insists ? insistent : others;
+    bool const insists = expected.insists && !is_on_foot && goes_on(seen);
+    auto its = others;
+    if (insists) let_insist(its, !gives_up_lane(world, slot));
     auto* const desired = desired_speed_of(its);
     bool is_other = insists;
     if (desired != nullptr && expected.keeps_speed) {

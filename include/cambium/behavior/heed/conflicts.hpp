@@ -111,11 +111,11 @@ struct Conflicts {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// In junctions the right of way decides whether the driver follows those who merge into its lane.
+  /// In junctions the right of way decides whether the driver follows those who merge into its lane; elsewhere, what
+  /// the driver is set to.
   template <class View>
   [[nodiscard]] static Merging merging(View const& view, Merging counted) {
     if (counted == Merging::counts) return Merging::by_rule;
-    if (counted != Merging::ignored) return counted;
     auto const& feeders = view.corridor().feeders;
     double const front = view.place().s + view.shape().front;
     auto const next =

@@ -115,7 +115,7 @@ class PredictionJudge {
   }
 
   /// Adds the Brier score (Brier 1950) of the ways of `agent`: the nearest to where it is has come true. Alternatives
-  /// that end in the same place are one way; who has only one is not judged.
+  /// that end in the same place are one way. Who has only one, or only one that is not negligible, is not judged.
   template <class World>
   void weigh(World const& world, Alternatives const& asked, AgentId agent) {
     auto const seen = place(world, agent, asked.time);
@@ -131,7 +131,9 @@ class PredictionJudge {
       else
         same->probability += one.probability;
     }
-    if (ways.size() < 2) return;
+    constexpr double negligible = 0.01;
+    auto const counts = [](Alternative const& way) { return way.probability > negligible; };
+    if (std::ranges::count_if(ways, counts) < 2) return;
     auto const came_true = std::ranges::min_element(
         ways, {}, [&](Alternative const& way) { return portable::hypot(way.after.x - seen.x, way.after.y - seen.y); });
     for (auto way = ways.begin(); way != ways.end(); ++way) {

@@ -61,7 +61,8 @@ struct FrenetLimits {
         parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0.1, 50}, "of valid courses"),
         parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50}, "of valid courses"),
         parameter("highest_curvature", &P::highest_curvature, "1/m", Range{1e-3, 10}, "of valid courses"),
-        parameter("clearance", &P::clearance, "m", Range{0, 10}, "distance kept on all sides"));
+        parameter("clearance", &P::clearance, "m", Range{0, 10},
+                  "distance kept on all sides, where there is a course that does"));
   }
 };
 
@@ -77,8 +78,9 @@ enum class FrenetVerdict : std::uint8_t {
   gap,
   road,
   collision,
-  stop,     ///< it passes a place where it has to stop by the rules
-  follower  ///< one behind in the lane beside would have to brake hard
+  stop,      ///< it passes a place where it has to stop by the rules
+  follower,  ///< one behind in the lane beside would have to brake hard
+  close      ///< it touches nobody, but without the clearance; driven if no course is valid
 };
 
 /// What a candidate failed by, in words.
@@ -94,7 +96,8 @@ enum class FrenetVerdict : std::uint8_t {
                                    "off road",
                                    "collision",
                                    "red light, stop sign or right of way",
-                                   "follower brakes"};
+                                   "follower brakes",
+                                   "too close"};
   return names[static_cast<std::size_t>(verdict)];
 }
 

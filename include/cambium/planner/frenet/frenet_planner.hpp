@@ -59,7 +59,8 @@ struct FrenetMemory {
 /// across the lane and a quartic or quintic one along it, to one of several speeds or to a place behind the leader,
 /// over one of several durations. The planner drives the cheapest course that is drivable, stays on the road, stops
 /// where signals (`Signals`) and the right of way (`Conflicts`) ask for it, and keeps clear of the others, whose motion
-/// it predicts once as `Others`. If there is none, it brakes. `PredictionWorld` must have `Others` in its behaviour
+/// it predicts once as `Others`. If there is none, it drives the cheapest that touches nobody, else it brakes.
+/// `PredictionWorld` must have `Others` in its behaviour
 /// set. With own `terms`, all courses are checked, and the sum of the terms over a valid course is deducted from its
 /// cost.
 ///
@@ -165,7 +166,7 @@ struct FrenetPlanner {
         parameter("room_to_change", &P::room_to_change, "m", Range{0, 1000},
                   "kept for each lane change still needed where it must stop before the end of a lane"),
         parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.1, 20},
-                  "with which it comes to the end of a lane"),
+                  "with which it stops for rules; at the end of a lane twice that"),
         parameter("budget", &P::budget, "how many courses are checked, the cheapest first"),
         parameter("terms", &P::terms, "evaluators whose sum over a course is deducted from its cost"),
         parameter("signals", &P::signals, "how it stops at lights and stop signs"),
@@ -208,9 +209,22 @@ struct FrenetPlanner {
     for (auto& candidate : candidates)
       if (std::isnan(candidate.cost)) candidate.cost = std::numeric_limits<double>::infinity();
     detail::stable_sort(candidates, &FrenetCandidate::cost);
-    check(view, limits.clearance, workspace, clock);
-    if (!workspace.chosen && limits.clearance > 0.0)
-      check(view, 0.0, workspace, clock);  // better close than braking on
+    bool const all = has_terms || workspace.shows_all;
+    auto& best = workspace.chosen;
+    std::optional<std::size_t> close;
+    for (std::size_t i = 0; i < candidates.size() && (all || !best) && workspace.goes_on(clock, i); ++i) {
+      auto& found = candidates[i].verdict;
+      if (found == FrenetVerdict::unchecked) found = verdict(view, candidates[i], workspace);
+      if (found == FrenetVerdict::close && !close) close = i;
+      if (found != FrenetVerdict::valid) continue;
+      if constexpr (has_terms) {
+        candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
+        if (!std::isfinite(candidates[i].cost)) found = FrenetVerdict::not_finite;
+        if (found != FrenetVerdict::valid) continue;
+      }
+      if (!best || candidates[i].cost < candidates[*best].cost) best = i;
+    }
+    if (!best) best = close;  // rather than to brake on beside somebody
     return SearchProblem::none;
   }
 
@@ -250,14 +264,15 @@ struct FrenetPlanner {
 
   /// "follow in 3 s, 12 m/s at 0.7 m, left lane".
   template <class View>
-  [[nodiscard]] PlannerCandidate entry(View const& view, Workspace const&, FrenetCandidate const& c) const {
+  [[nodiscard]] PlannerCandidate entry(View const& view, Workspace const& workspace, FrenetCandidate const& c) const {
     auto const& piece = view.corridor().pieces[view.place().piece];
     std::string words = c.kind == FrenetCandidate::Kind::follow ? "follow" : "keep speed";
     words += " in " + detail::rounded_text(c.duration) + " s, " + detail::rounded_text(c.speed) + " m/s at " +
              detail::rounded_text(c.offset) + " m";
     if (c.corridor != view.place().corridor) words += c.corridor == piece.left ? ", left lane" : ", right lane";
     if (c.tight) words += ", tight";
-    return {words, -c.cost, c.verdict == FrenetVerdict::valid ? "" : to_string(c.verdict)};
+    bool const is_driven = workspace.chosen && workspace.candidates[*workspace.chosen].verdict == c.verdict;
+    return {words, -c.cost, is_driven || c.verdict == FrenetVerdict::valid ? "" : to_string(c.verdict)};
   }
 
  private:
@@ -272,26 +287,6 @@ struct FrenetPlanner {
     CourseMotion<double> course;
     FrenetMotion<double> frenet;
   };
-
-  /// Checks the courses that are not known to be invalid with this clearance [m], and chooses among them.
-  template <class View>
-  void check(View const& view, double clearance, Workspace& workspace, Budget& clock) const {
-    auto& candidates = workspace.candidates;
-    bool const all = has_terms || workspace.shows_all;
-    auto& best = workspace.chosen;
-    for (std::size_t i = 0; i < candidates.size() && (all || !best) && workspace.goes_on(clock, i); ++i) {
-      auto& known = candidates[i].verdict;
-      if (known == FrenetVerdict::unchecked || known == FrenetVerdict::collision)
-        known = verdict(view, candidates[i], clearance, workspace);
-      if (known != FrenetVerdict::valid) continue;
-      if constexpr (has_terms) {
-        candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
-        if (!std::isfinite(candidates[i].cost)) known = FrenetVerdict::not_finite;
-        if (known != FrenetVerdict::valid) continue;
-      }
-      if (!best || candidates[i].cost < candidates[*best].cost) best = i;
-    }
-  }
 
   /// How far it may drive before it has to stop by the rules [m].
   template <class View>
@@ -352,7 +347,7 @@ struct FrenetPlanner {
                                       std::max(0.0, 1.0 - 2.0 * closeness) * desired_speed);
     auto const known = may_enter(view, number) ? FrenetVerdict::unchecked : FrenetVerdict::follower;
     for (double const duration : durations) {
-      set_targets(view, number, at, fastest, stop, duration, workspace);
+      set_targets(view, number, at, fastest, fastest < wanted, stop, duration, workspace);
       for (auto const& target : workspace.targets)
         for (double const offset : offsets)
           for (bool const tight : {false, true}) {
@@ -368,35 +363,47 @@ struct FrenetPlanner {
     }
   }
 
-  /// How fast to drive at most in order to change lanes soon [m/s]: as fast as the next one in the lane beside that
-  /// leads to the destination, or around one that is parked; and slower than those who are beside. From `piece` it
-  /// needs `lanes` changes. Infinite if nobody is there.
+  /// How fast to drive at most in order to change lanes soon [m/s]: so that it may slow down to the next one in a lane
+  /// beside that leads to the destination, or around one that is parked, and slower than those who are beside there.
+  /// From `piece` it needs `lanes` changes. Those who stand do not count. Infinite if nobody is there.
   template <class View, class Piece>
   [[nodiscard]] double speed_to_change(View const& view, Piece const& piece, int lanes) const {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
     constexpr double close = 0.3, slower = 3.0;  // [s], [m/s]
     double const enough = minimum_gap + close * std::max(0.0, view.state().speed);
-    auto fastest = std::numeric_limits<double>::infinity();
+    auto const moves = [](std::optional<RoadUser> const& user) {
+      return user && is_valid(user->agent) && user->speed >= standing_speed;
+    };
+    double fastest = 0.0;
+    bool is_known = false;
     for (auto const side : {piece.left, piece.right}) {
       if (side == none<CorridorId>) continue;
       auto const there = view.place(side);
       if (lanes_to_destination(view.road(), side, there.piece) >= lanes) continue;
+      double there_fastest = infinite;
       Look const look{.merging = Merging::by_rule};
-      if (auto const next = view.ahead(there, look); next && next->gap < look_ahead && !detail::is_parked(view, *next))
-        fastest = std::min(fastest, next->speed - (next->gap < enough ? slower : 0.0));
-      if (auto const rear = view.behind(there, look); rear && rear->gap < enough)
-        fastest = std::min(fastest, rear->speed - slower);
+      auto const slowed_to = [&](double speed) { there_fastest = std::min(there_fastest, std::max(0.0, speed)); };
+      if (auto const next = view.ahead(there, look); moves(next)) {
+        double const spare = next->gap - enough;
+        slowed_to(spare < 0.0 ? next->speed - slower
+                              : std::sqrt(next->speed * next->speed + 2.0 * comfortable_deceleration * spare));
+      }
+      if (auto const rear = view.behind(there, look); moves(rear) && rear->gap < enough)
+        slowed_to(rear->speed - slower);
+      fastest = std::max(fastest, there_fastest);
+      is_known = true;
     }
-    return std::max(0.0, fastest);
+    return is_known ? fastest : infinite;
   }
 
-  /// Whether no follower on a corridor has to brake hard for ego, if it follows by `Acc`. Who is beside it is left to
-  /// the check for collisions.
+  /// Whether no follower on a corridor has to brake hard for ego. It is assumed to drive by `Acc`, since IDM brakes
+  /// hard for gaps that people accept. Who is beside is left to the check for collisions.
   template <class View>
   [[nodiscard]] bool may_enter(View const& view, CorridorId number) const {
     if (number == view.place().corridor) return true;
     auto const rear = view.behind(view.place(number), {.merging = Merging::by_rule});
     if (!rear || !is_valid(rear->agent) || !(rear->gap > 0.0)) return true;
-    double const speed = std::max(0.0, rear->speed), desired = std::max(desired_speed, speed);
+    double const speed = std::max(0.0, rear->speed), desired = std::max(Acc{}.desired_speed, speed);
     return Acc{}.acceleration(speed, desired, {rear->gap, std::max(0.0, view.state().speed)}) >= -safe_deceleration;
   }
 
@@ -407,11 +414,11 @@ struct FrenetPlanner {
     return view.ahead(view.place(number), {.merging = Merging::by_rule});
   }
 
-  /// Sets the targets of courses of `duration` [s]: speeds up to `fastest` [m/s], a place behind the leader, and `stop`
-  /// [m] if it is finite.
+  /// Sets the targets of courses of `duration` [s]: speeds up to `fastest` [m/s]; a place behind the leader, unless ego
+  /// is slowed below its speed for something else; and `stop` [m] if it is finite.
   template <class View>
-  void set_targets(View const& view, CorridorId number, map::LanePlace const& at, double fastest, double stop,
-                   double duration, Workspace& workspace) const {
+  void set_targets(View const& view, CorridorId number, map::LanePlace const& at, double fastest, bool is_slowed,
+                   double stop, double duration, Workspace& workspace) const {
     constexpr double rounding = 0.1;  // [m/s]
     auto& targets = workspace.targets;
     targets.clear();
@@ -419,7 +426,7 @@ struct FrenetPlanner {
       targets.push_back({std::numeric_limits<double>::infinity(), share * fastest});
     if (auto const leader = leader_of(view, number)) {
       auto const place = behind(workspace, *leader, at.s, duration);
-      if (place.speed <= fastest + rounding) targets.push_back(place);
+      if (!is_slowed || place.speed <= fastest + rounding) targets.push_back(place);
     }
     if (std::isfinite(stop)) targets.push_back({stop, 0.0});
   }
@@ -456,13 +463,14 @@ struct FrenetPlanner {
   }
 
   template <class View>
-  [[nodiscard]] FrenetVerdict verdict(View const& view, FrenetCandidate const& candidate, double clearance,
+  [[nodiscard]] FrenetVerdict verdict(View const& view, FrenetCandidate const& candidate,
                                       Workspace const& workspace) const {
     if (!std::isfinite(candidate.cost)) return FrenetVerdict::not_finite;
     if (candidate.kind == FrenetCandidate::Kind::keep_speed && comes_too_near(view, candidate, workspace))
       return FrenetVerdict::gap;
     constexpr double rounding = 0.1;  // [m]
     double const line = view.place(candidate.corridor).s + workspace.free_way + rounding;
+    bool is_close = false;
     auto record = workspace.frames[0].agents[workspace.ego];
     double const fastest = std::max(view.state().speed, 1.1 * desired_speed) + 0.1;
     for (std::size_t k = 1; k < workspace.frames.size(); ++k) {
@@ -476,12 +484,15 @@ struct FrenetPlanner {
           (OffRoad::leaves(view.map(), view.road(), record.lane, record.state, view.shape()) ||
            OncomingLane::enters(view.map(), view.road(), record.lane, record.state, view.shape())))
         return FrenetVerdict::road;
-      auto box = geometry::box_of(view.shape(), driven.state);
-      box.half_length += clearance;
-      box.half_width += clearance;
+      auto const box = geometry::box_of(view.shape(), driven.state);
+      auto grown = box;
+      grown.half_length += limits.clearance;
+      grown.half_width += limits.clearance;
+      if (!workspace.touched(grown, k)) continue;
       if (workspace.touched(box, k)) return FrenetVerdict::collision;
+      is_close = true;
     }
-    return FrenetVerdict::valid;
+    return is_close ? FrenetVerdict::close : FrenetVerdict::valid;
   }
 
   /// The sum of the terms over a course; not finite if one of them is not.

@@ -265,7 +265,8 @@ struct Mcts {
           detail::moves_across(world.frame().agents[slot]) || detail::is_beside_lanes(world, slot))
         continue;
       auto its = ActionSet<Actions>::behavior(actions);
-      if (others_insist) detail::let_insist(its);
+      if (others_insist && detail::goes_on(world.frame().agents[slot]))
+        detail::let_insist(its, !detail::gives_up_lane(world, slot));
       world.set_behavior(world.roster().agents[slot].id, its);
       slots.push_back(slot);
     }

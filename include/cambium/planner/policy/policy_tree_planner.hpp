@@ -21,7 +21,8 @@
 
 namespace cambium {
 
-/// A sequence of ego's actions and its cost.
+/// A sequence of ego's actions and its cost. In a plan, unlike a report, one that cannot win is broken off: then its
+/// cost is a bound, above that of the best, and the other figures are incomplete.
 struct PolicyBranch {
   PolicySequence sequence{};
   std::size_t scenarios{};  ///< number of simulations, one for each intention of the others that matters
@@ -145,8 +146,9 @@ struct PolicyTreePlanner {
       double const limit = compares_all ? infinite : branches[*workspace.chosen].cost;
       auto& branch = branches.emplace_back();
       branch.sequence = sequence;
-      weigh(workspace, memory, branch, limit);
-      if (sequence.first != now) branch.cost += weights.change;
+      double const extra = sequence.first != now ? weights.change : 0.0;
+      weigh(workspace, memory, branch, limit - extra);
+      branch.cost += extra;
       if (!std::isfinite(branch.cost)) return SearchProblem::not_finite;
       if (!workspace.chosen || branch.cost < branches[*workspace.chosen].cost) workspace.chosen = branches.size() - 1;
     }
