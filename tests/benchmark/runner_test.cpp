@@ -255,7 +255,9 @@ TEST_CASE("what a planner expected of the others is compared with what they did"
   CHECK(wrong.prediction_error_1s < 0.8);
   CHECK(wrong.prediction_error_3s > 4.0 * wrong.prediction_error_1s);
   CHECK(wrong.prediction_error_5s > wrong.prediction_error_3s);
-  auto const tree = run(10.0, PolicyTreePlanner<Predicted>{});
+  PolicyTreePlanner<Predicted> guessing;
+  guessing.intentions.change = 0.45;  // else nobody seems to be about to change lanes
+  auto const tree = run(10.0, guessing);
   CHECK(tree.prediction_brier > 0.0);
   CHECK(tree.prediction_brier < 2.0);
   CHECK(std::isnan(run(10.0, IdmClassic{.law = {.desired_speed = 10.0}}).prediction_error_1s));
