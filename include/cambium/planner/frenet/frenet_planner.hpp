@@ -60,9 +60,8 @@ struct FrenetMemory {
 /// over one of several durations. The planner drives the cheapest course that is drivable, stays on the road, stops
 /// where signals (`Signals`) and the right of way (`Conflicts`) ask for it, and keeps clear of the others, whose motion
 /// it predicts once as `Others`. If there is none, it drives the cheapest that touches nobody, else it brakes.
-/// `PredictionWorld` must have `Others` in its behaviour
-/// set. With own `terms`, all courses are checked, and the sum of the terms over a valid course is deducted from its
-/// cost.
+/// `PredictionWorld` must have `Others` in its behaviour set. With own `terms`, all courses are checked, and the sum of
+/// the terms over a valid course is deducted from its cost.
 ///
 /// The candidates of its report are the courses, cheapest first without `terms`; a score is a negative cost. In the
 /// frames of the report's course, ego's memory is that of the start.

@@ -157,8 +157,9 @@ struct Mcts {
         parameter("cooperation", &P::cooperation, "-", Range{0, 1},
                   "weight of the others' rewards and costs in an agent's own"),
         parameter("belief", &P::belief, "how it learns about the others if there are hypotheses about them"),
-        parameter("others_insist", &P::others_insist,
-                  "those who go first and do not brake yet are expected to go on, whatever ego does"));
+        parameter(
+            "others_insist", &P::others_insist,
+            "those who go first and do not brake yet are expected to go on, and to open no gap where lanes merge"));
   }
 
   void check(std::string const& where) const {

@@ -103,8 +103,9 @@ struct PolicyTreePlanner {
         parameter("range", &P::range, "m", non_negative, "agents farther away keep their lanes"),
         parameter("budget", &P::budget, "how many sequences are simulated, the ongoing action first"),
         parameter("terms", &P::terms, "evaluators whose sum over a sequence is deducted from its cost"),
-        parameter("others_insist", &P::others_insist,
-                  "those who go first and do not brake yet are expected to go on, whatever ego does"));
+        parameter(
+            "others_insist", &P::others_insist,
+            "those who go first and do not brake yet are expected to go on, and to open no gap where lanes merge"));
   }
 
   void check(std::string const& where) const { detail::refuse_costs(terms, where); }
