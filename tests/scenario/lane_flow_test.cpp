@@ -285,7 +285,41 @@ TEST_CASE("populations drive the same vehicles from the same places, each in its
   CHECK(refused ==
         "recipe.flows[0]: needs HumanDriver of mobil, which the program lacks; add it to the BehaviorSet of the "
         "program's World, or leave out inattentive and mixed");
-  lacking.populations.clear();
-  CHECK(support::error_of([&] { return draw(lacking, map); }) ==
-        "recipe: has no populations; leave them out, or name some");
+}
+
+TEST_CASE("populations without effect are refused") {
+  using P = TrafficPopulation;
+  using Open = World<BehaviorSet<Mobil, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+  using OpenRecipe = ScenarioRecipe<Open>;
+  auto const map = support::own_map("highway.xodr");
+  auto const refusal_of = [&](OpenRecipe recipe, auto const&... drivers) {
+    recipe.scenarios = 1;
+    recipe.flows = {LaneFlow<Open>{.from = highway_lane(-2), .traffic = {.end = 400.0}, .drivers = {drivers...}}};
+    return support::error_of([&] { return draw(recipe, map); });
+  };
+  DriverShare<Open> const usual{.behavior = Mobil{}}, person{.behavior = Mobil{}, .people = true},
+      nobody{.share = 0.0, .behavior = Mobil{}, .people = true},
+      machine{.behavior = ConstantAcceleration{}, .people = true};
+  CHECK(refusal_of({.populations = {P::timid, P::as_given}}, usual, person) == "no error");
+  CHECK(refusal_of({.populations = {}}, person) == "recipe: has no populations; leave them out, or name some");
+  CHECK(refusal_of({.populations = {P::timid, P::as_given, P::timid}}, person) ==
+        "recipe.populations: has timid twice; name each once");
+  std::string const no_people =
+      R"(recipe: has populations, but none of its drivers are people; leave them out, or give drivers "people": true)";
+  CHECK(refusal_of({.populations = {P::as_given, P::mixed}}, usual) == no_people);
+  CHECK(refusal_of({.populations = {P::mixed}}, usual, nobody) == no_people);
+  CHECK(refusal_of({}, usual, machine) ==
+        "recipe.flows[0].drivers[1].people: is true, but the behaviour is no Driver, as mobil is one; leave it out, or "
+        "take another behaviour");
+  for (auto const kind : {OpenRecipe::Kind::merging, OpenRecipe::Kind::highway, OpenRecipe::Kind::junction})
+    CHECK(refusal_of({.kind = kind, .populations = {P::as_given, P::timid}}, person) ==
+          "recipe: has populations, but no flows; leave them out, or make it of kind lanes");
+
+  auto const population_among = [&](DriverShare<Open> const& driver) {
+    OpenRecipe recipe{.scenarios = 1};
+    recipe.flows = {LaneFlow<Open>{.from = highway_lane(-2), .traffic = {.end = 400.0}, .drivers = {driver}}};
+    return draw(recipe, map).front().population;
+  };
+  CHECK(population_among(person) == "as_given");
+  CHECK(population_among(usual) == "");  // nobody is of it
 }

@@ -217,6 +217,25 @@ void check_drawn(LaneFlow<World> const& flow, std::string const& where) {
     }
 }
 
+/// Whether a driver differs by population.
+template <class World>
+[[nodiscard]] bool is_person(DriverShare<World> const& driver) {
+  return driver.people && driver.share > 0.0;
+}
+
+/// Checks that those who differ by population can do so.
+template <class World>
+void check_people(LaneFlow<World> const& flow, std::string const& where) {
+  for (std::size_t d = 0; d < flow.drivers.size(); ++d) {
+    auto const& driver = flow.drivers[d];
+    bool const is_driver = std::visit([]<class Given>(Given const&) { return can_be_person<Given>; }, driver.behavior);
+    if (driver.people && !is_driver)
+      throw ParameterError(where + ".drivers[" + std::to_string(d) + "].people",
+                           "is true, but the behaviour is no Driver, as mobil is one",
+                           "leave it out, or take another behaviour");
+  }
+}
+
 template <class World>
 [[nodiscard]] std::vector<FlowPlan<World>> plan_flows(std::shared_ptr<Map const> const& map,
                                                       std::vector<LaneFlow<World>> const& flows,
@@ -239,6 +258,7 @@ template <class World>
       throw ParameterError(plan.where + ".traffic.desired_speed", "is not for flows with drivers",
                            "give the speed to these, or draw it: {\"key\": \"desired_speed\", \"value\": ...}");
     check_drawn(flow, plan.where);
+    check_people(flow, plan.where);
     plan_way(map, plan);
     auto& traffic = plan.flow.traffic;
     traffic.end = std::min(traffic.end, plan.lanes->length());

@@ -85,11 +85,36 @@ template <class World, class Drawn>
   });
 }
 
+/// Whether flows have drivers who differ by population.
+template <class World>
+[[nodiscard]] bool has_people(std::vector<LaneFlow<World>> const& flows) {
+  return std::ranges::any_of(flows, [](auto const& flow) {
+    return std::ranges::any_of(flow.drivers, [](auto const& driver) { return is_person(driver); });
+  });
+}
+
+/// Throws `ParameterError` for populations that would draw nothing, or the same twice.
+template <class World>
+void check_populations(ScenarioRecipe<World> const& recipe, std::string const& where) {
+  auto const& all = recipe.populations;
+  if (all.empty()) throw ParameterError(where, "has no populations", "leave them out, or name some");
+  for (auto one = all.begin(); one != all.end(); ++one)
+    if (std::find(all.begin(), one, *one) != one)
+      throw ParameterError(where + ".populations", "has " + std::string(to_string(*one)) + " twice", "name each once");
+  if (std::ranges::all_of(all, [](auto one) { return one == TrafficPopulation::as_given; })) return;
+  if (recipe.kind != ScenarioRecipe<World>::Kind::lanes)
+    throw ParameterError(where, "has populations, but no flows", "leave them out, or make it of kind lanes");
+  if (!has_people(recipe.flows))
+    throw ParameterError(where, "has populations, but none of its drivers are people",
+                         "leave them out, or give drivers \"people\": true");
+}
+
 }  // namespace detail
 
 /// The scenarios of a recipe. The same recipe gives the same scenarios on every platform. No two vehicles overlap, and
-/// none has to brake hard at once. Throws `ParameterError` if the recipe asks for a behaviour that `World` lacks, and
-/// what the samplers throw; `where` is the recipe, for messages. O(scenarios * vehicles^2).
+/// none has to brake hard at once. Throws `ParameterError` if the recipe asks for a behaviour that `World` lacks or for
+/// populations without effect, and what the samplers throw; `where` is the recipe, for messages.
+/// O(scenarios * vehicles^2).
 template <class World>
 [[nodiscard]] std::vector<Scenario<World>> draw(ScenarioRecipe<World> const& recipe,
                                                 std::shared_ptr<Map const> const& map,
@@ -108,6 +133,7 @@ template <class World>
   };
   if (recipe.kind != Kind::lanes && !(recipe.lights.empty() && recipe.objects.empty()))
     throw ParameterError(where, "has lights or objects, but no flows", "leave them out, or make it of kind lanes");
+  detail::check_populations(recipe, where);
   auto const sample = [&](auto const& site, auto const&... traffic) {
     each([&](std::uint32_t n) {
       return detail::with_drivers_of<World>(site.sample(recipe.seed, n, traffic...), where);
@@ -125,10 +151,10 @@ template <class World>
     throw ParameterError(where, problem.what());
   }
   auto const plans = detail::plan_flows(map, recipe.flows, where);
-  if (recipe.populations.empty()) throw ParameterError(where, "has no populations", "leave them out, or name some");
   for (auto const population : recipe.populations) {
     auto const first = scenarios.size();
     each([&](std::uint32_t number) { return detail::draw_flows(site, plans, recipe.room, population, number, where); });
+    if (!detail::has_people(recipe.flows)) continue;
     for (auto i = first; i < scenarios.size(); ++i) scenarios[i].population = to_string(population);
   }
   return scenarios;

@@ -30,13 +30,19 @@ inline constexpr char const* population_names = "as_given|timid|aggressive|inatt
 
 namespace detail {
 
-/// A driver of a population in place of `given`, as far as it is a `Driver`: its desired speed is that of `given`,
-/// times the speed factor of its temperament. Throws `ParameterError` if `World` lacks the behaviour.
+/// Whether a behaviour can be one of a population: a `Driver`.
+template <class Given>
+inline constexpr bool can_be_person = requires(Given given) {
+  presets::Temperament{}.of(given);
+  given.law.desired_speed;
+};
+
+/// A driver of a population in place of `given`: its desired speed is that of `given`, times the speed factor of its
+/// temperament. Returns `given` if it is no `Driver`. Throws `ParameterError` if `World` lacks the behaviour.
 template <class World, class Given>
 [[nodiscard]] typename World::Behavior driver_of(TrafficPopulation population, Given const& given, RandomStream& random,
                                                  std::string const& where) {
-  if constexpr (
-      requires { presets::Temperament{}.of(given); } && requires { given.law.desired_speed; }) {
+  if constexpr (can_be_person<Given>) {
     using P = TrafficPopulation;
     if (population == P::mixed) population = static_cast<P>(uniform_index(random, 4));
     if (population == P::as_given) return given;
