@@ -243,7 +243,10 @@ TEST_CASE("the benchmark names the fault in its options") {
   program.refuses({"--set", own(R"({"scenarios": [{)" + map + ", " + agents + "]}")},
                   "own.json: scenario 0: has no ego");
   program.refuses({"--set", own(R"({"scenarios": [{)" + map + R"(, "ego": 0, )" + agents + "]}"), "--seed", "3"},
-                  "has no recipes to which --scenarios, --seed and --split could apply");
+                  "has no recipes to which --scenarios, --seed, --split and --populations could apply");
+  program.refuses(
+      {"--set", own(R"({"scenarios": [{)" + map + R"(, "ego": 0, )" + agents + "]}"), "--populations", "as_given"},
+      "has no recipes to which --scenarios, --seed, --split and --populations could apply");
   auto const replay = folder.file("replay.html");
   REQUIRE(program.run({"--set", "merging", "--only", "merging:0:idm", "--replay", replay}).code == 0);
   program.refuses({"--set", "merging", "--db", replay + "/in_a_file.db"}, "in_a_file.db");

@@ -180,8 +180,8 @@ template <class World>
       if (!is_valid(set.scenarios[i].ego))
         throw Error(file.string() + ": scenario " + std::to_string(i), "has no ego",
                     "name the agent that the benchmark is about");
-    if ((command.scenarios || command.seed || command.trains) && !is_drawn)
-      throw Error(file.string(), "has no recipes to which --scenarios, --seed and --split could apply",
+    if ((command.scenarios || command.seed || command.trains || !command.populations.empty()) && !is_drawn)
+      throw Error(file.string(), "has no recipes to which --scenarios, --seed, --split and --populations could apply",
                   "leave them out");
   }
   return sets;
