@@ -247,6 +247,13 @@ TEST_CASE("the benchmark names the fault in its options") {
   program.refuses(
       {"--set", own(R"({"scenarios": [{)" + map + R"(, "ego": 0, )" + agents + "]}"), "--populations", "as_given"},
       "has no recipes to which --scenarios, --seed, --split and --populations could apply");
+  std::string const recipe =
+      R"({"recipes": [{"scenarios": 1, "flows": [{"from": "1/0/-1", "ego": "first", "drivers": [{"people": true}]}], )";
+  program.refuses({"--set", own(recipe + map + R"(, "populations": []}]})")},
+                  "own.json: recipes[0]: has no populations; leave them out, or name some");
+  program.refuses({"--set", own(recipe + map + R"(, "populations": ["timid"]}]})"), "--populations", "mixed,as_given"},
+                  "own.json: has none of the populations of --populations; leave out the option, or name others");
+  program.refuses({"--set", "merging", "--populations", "timid"}, "has none of the populations of --populations");
   auto const replay = folder.file("replay.html");
   REQUIRE(program.run({"--set", "merging", "--only", "merging:0:idm", "--replay", replay}).code == 0);
   program.refuses({"--set", "merging", "--db", replay + "/in_a_file.db"}, "in_a_file.db");

@@ -163,11 +163,12 @@ template <class World>
       is_drawn = true;
       if (command.scenarios) recipe.scenarios = static_cast<std::uint32_t>(*command.scenarios);
       if (command.seed) recipe.seed = *command.seed;
-      if (!command.populations.empty())
+      if (!command.populations.empty() && !recipe.populations.empty()) {  // else `draw` says what is wrong
         std::erase_if(recipe.populations, [&](auto one) { return std::ranges::count(command.populations, one) == 0; });
-      if (recipe.populations.empty())
-        throw Error(file.string(), "has none of the populations of --populations",
-                    "leave out the option, or name others");
+        if (recipe.populations.empty())
+          throw Error(file.string(), "has none of the populations of --populations",
+                      "leave out the option, or name others");
+      }
       if (!command.trains) return;
       if (recipe.first >= first_to_train)
         throw Error(file.string(), "a recipe begins at scenario " + std::to_string(recipe.first),
