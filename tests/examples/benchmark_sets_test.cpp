@@ -67,7 +67,7 @@ TEST_CASE("the exam has twenty situations among five populations, and other scen
     CAPTURE(row.dump());
     CHECK(row["scenarios"] == 1);
     CHECK(row["error"] == 0.0);
-    CHECK(row["traffic"] == row["population"]);
+    CHECK(row["traffic"].is_null());
     kinds.insert(std::string(row["situation"]) + ", " + std::string(row["population"]));
     (row["planner"] == "idm" ? idm : intersection) += double(row["success"]) / 100.0;
   }

@@ -200,6 +200,30 @@ TEST_CASE("a file of parameters says how fast a planner likes to drive; without 
   CHECK_FALSE(has(printed.substr(printed.find("\"idm\""), 400), "desired_speed"));
 }
 
+TEST_CASE("a table has rows by the titles and populations of recipes") {
+  Program const program("benchmark");
+  browser::TemporaryFolder const folder;
+  auto const recipe = [](std::string const& more) {
+    return R"({"map_file": ")" CAMBIUM_SOURCE_DIR R"(/maps/highway.xodr", "scenarios": 2, )" + more + "}";
+  };
+  auto const flow = [](std::string const& people) {
+    return R"("flows": [{"from": "1/0/-2", "ego": "last", "traffic": {"end": 200}, "drivers": [{"behavior": "mobil")" +
+           people + "}]}]";
+  };
+  std::string const person = R"(, "people": true)";
+  cambium::write_file(folder.file("own.json"),
+                      R"({"time_limit": 1, "recipes": [)" +
+                          recipe(R"("title": "dense", "populations": ["timid", "as_given"], )" + flow(person)) + ", " +
+                          recipe(R"("title": "light", "populations": ["timid"], )" + flow(person)) + ", " +
+                          recipe(R"("title": "light", )" + flow("")) + ", " + recipe(flow("")) + "]}");
+  program.output({"--set", folder.file("own.json"), "--behaviors", "idm", "--db", folder.file("own.db"), "--replays",
+                  "none", "--json", folder.file("rows.json")});
+  std::string rows;
+  for (auto const& row : nlohmann::json::parse(content_of(folder.file("rows.json"))))
+    rows += row["traffic"].dump() + " " + row["population"].dump() + " " + row["scenarios"].dump() + "; ";
+  CHECK(rows == R"("dense" "timid" 2; "dense" "as_given" 2; "light" "timid" 2; "light" null 2; null null 2; )");
+}
+
 TEST_CASE("a folder of sets is run as a whole, wherever it is") {
   Program const program("benchmark");
   browser::TemporaryFolder const folder;

@@ -72,14 +72,15 @@ struct BenchmarkCommand {
 [[nodiscard]] std::string source_of(BenchmarkCommand const& command, std::filesystem::path const& file,
                                     std::filesystem::path const& folder);
 
-/// The results on the scenarios of a set with one population, or, without such, one title; `traffic` is empty where
-/// that is the set's own title.
+/// The results on the scenarios of a set with one title, which is empty where it is the set's own, and one population,
+/// which is empty where they have none.
 struct TrafficGroup {
   std::string traffic{};
+  std::string population{};
   ResultGroup results{};
 };
 
-/// The groups by populations or titles of scenarios, in their order.
+/// The groups by titles and populations of scenarios, in their order.
 template <class World>
 [[nodiscard]] std::vector<TrafficGroup> by_traffic(std::vector<ResultGroup> const& groups,
                                                    std::vector<ScenarioSet<World>> const& sets) {
@@ -93,17 +94,18 @@ template <class World>
     auto const first = static_cast<std::ptrdiff_t>(parts.size());
     for (auto const& row : group.rows) {
       auto const& scenario = set.scenarios[static_cast<std::size_t>(row.scenario)];
-      auto title = scenario.population.empty() ? scenario.title : scenario.population;
-      if (title == set.title) title.clear();
-      auto part = std::ranges::find(parts.begin() + first, parts.end(), title, &TrafficGroup::traffic);
-      if (part == parts.end()) part = parts.insert(parts.end(), {title, whole});
+      auto const title = scenario.title == set.title ? std::string() : scenario.title;
+      auto part = std::find_if(parts.begin() + first, parts.end(), [&](TrafficGroup const& one) {
+        return one.traffic == title && one.population == scenario.population;
+      });
+      if (part == parts.end()) part = parts.insert(parts.end(), {title, scenario.population, whole});
       part->results.rows.push_back(row);
     }
   }
   return parts;
 }
 
-/// The table as JSON: a row for each set, title of scenarios, and behaviour.
+/// The table as JSON: a row for each set, title and population of scenarios, and behaviour.
 [[nodiscard]] std::string summary_json(std::vector<TrafficGroup> const& parts);
 
 /// The results that the database has of these sets and contenders, in their order.

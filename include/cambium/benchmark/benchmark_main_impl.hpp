@@ -169,7 +169,8 @@ inline void add_benchmark_options(CLI::App& app, BenchmarkCommand& command) {
   add_text(app, "--replay", "FILE",
            "with --only: write a replay that opens in a browser, and beside it the snapshot of a failure",
            store_in(command.replay));
-  add_text(app, "--json", "FILE", "write the table: a row for each set, title of its recipes, and behaviour",
+  add_text(app, "--json", "FILE",
+           "write the table: a row for each set, title of its recipes, population, and behaviour",
            store_in(command.json));
   app.add_flag("--list", command.lists, "list behaviours and sets, and exit");
   app.set_help_flag("--help", "print this and exit");
@@ -282,7 +283,7 @@ CAMBIUM_COLD std::vector<std::filesystem::path> set_files(std::vector<std::strin
 
 CAMBIUM_COLD std::string summary_json(std::vector<TrafficGroup> const& parts) {
   std::vector<JsonValue> rows;
-  for (auto const& [traffic, group] : parts) {
+  for (auto const& [traffic, population, group] : parts) {
     std::map<std::string, double> means;
     for (auto const& measure : measures()) means[measure.key] = mean_of_measure(group, measure);
     auto successes = group;
@@ -291,7 +292,7 @@ CAMBIUM_COLD std::string summary_json(std::vector<TrafficGroup> const& parts) {
     std::vector<JsonValue::Member> row{{"planner", {group.behavior}},
                                        {"situation", {group.set}},
                                        {"traffic", traffic.empty() ? JsonValue{} : JsonValue{traffic}},
-                                       {"population", {group.rows.front().population}},
+                                       {"population", population.empty() ? JsonValue{} : JsonValue{population}},
                                        {"set", {group.set}},
                                        {"set_hash", {hash_text(group.set_hash)}},
                                        {"behavior", {group.behavior}},

@@ -194,7 +194,8 @@ struct OutcomeCount {
   std::vector<std::string> populations;
   for (auto const g : set)
     for (auto const& row : report.groups[g].rows)
-      if (std::ranges::find(populations, row.population) == populations.end()) populations.push_back(row.population);
+      if (!row.population.empty() && std::ranges::find(populations, row.population) == populations.end())
+        populations.push_back(row.population);
   if (populations.size() < 2) return table;
   table.head.insert(table.head.end(), populations.begin(), populations.end());
   for (auto const g : set) {
