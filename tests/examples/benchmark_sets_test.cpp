@@ -28,6 +28,9 @@ TEST_CASE(
     sets.insert(std::string(row["set"]));
     CHECK(row["scenarios"] == 40);
     CHECK(row["error"] == 0.0);
+    for (char const* name : {"prediction_error_1s", "prediction_error_3s", "prediction_error_5s"})
+      CHECK(row[name].is_number() == (row["behavior"] == "frenet"));  // idm expects nothing
+    CHECK(row["prediction_brier"].is_null());                         // and frenet one course only
     if (row["behavior"] == "idm")
       CHECK(row["success"] == 0.0);
     else
@@ -39,13 +42,16 @@ TEST_CASE(
 TEST_CASE("the exam has twenty situations among five populations, and other scenarios to train on") {
   Program const program("benchmark");
   browser::TemporaryFolder const folder;
+  std::set<std::string> brake_hard;                              // runs in which others have to
   using Seeds = std::map<std::string, std::set<std::uint64_t>>;  // by set: a title has one hash for each split
   auto const run = [&](std::string const& split, std::string const& name) {
     program.output({"--set", "planners", "--behaviors", "idm,urban", "--scenarios", "1", "--split", split, "--replays",
                     "none", "--db", folder.file(name + ".db"), "--json", folder.file(name + ".json")});
     Seeds seeds;
     cambium::ResultStore::existing(folder.file(name + ".db")).for_each([&](cambium::ResultRow const& row) {
-      seeds[cambium::hash_text(row.key.set_hash)].insert(row.seed);
+      auto const hash = cambium::hash_text(row.key.set_hash);
+      seeds[hash].insert(row.seed);
+      if (row.result.imposed_braking > 4.0) brake_hard.insert(hash + row.key.behavior + row.population);
     });
     return seeds;
   };
@@ -68,6 +74,8 @@ TEST_CASE("the exam has twenty situations among five populations, and other scen
     CHECK(row["scenarios"] == 1);
     CHECK(row["error"] == 0.0);
     CHECK(row["traffic"].is_null());
+    auto const key = std::string(row["set_hash"]) + std::string(row["behavior"]) + std::string(row["population"]);
+    CHECK(row["imposed_hard_braking"] == (brake_hard.contains(key) ? 1.0 : 0.0));
     kinds.insert(std::string(row["situation"]) + ", " + std::string(row["population"]));
     (row["planner"] == "idm" ? idm : intersection) += double(row["success"]) / 100.0;
   }

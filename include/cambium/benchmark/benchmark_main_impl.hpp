@@ -30,6 +30,7 @@
 #include "cambium/benchmark/executor.hpp"
 #include "cambium/benchmark/html_report.hpp"
 #include "cambium/benchmark/measure.hpp"
+#include "cambium/benchmark/result_group.hpp"
 #include "cambium/benchmark/run_result.hpp"
 #include "cambium/benchmark/runner.hpp"
 #include "cambium/core/error.hpp"
@@ -39,6 +40,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/core/write_file.hpp"
+#include "cambium/scenario/scenario_set.hpp"
 #include "cambium/viewer/html_replay.hpp"
 
 #if __has_include(<sys/wait.h>)
@@ -281,6 +283,13 @@ CAMBIUM_COLD std::vector<std::filesystem::path> set_files(std::vector<std::strin
   return files;
 }
 
+/// The share of runs in which others had to brake hard because of the ego: harder than `CriterionBounds` permits where
+/// a set does not say.
+[[nodiscard]] inline double share_with_hard_braking(ResultGroup const& group) {
+  auto const is_hard = [](auto const& row) { return row.result.imposed_braking > CriterionBounds{}.imposed_braking; };
+  return static_cast<double>(std::ranges::count_if(group.rows, is_hard)) / static_cast<double>(group.rows.size());
+}
+
 CAMBIUM_COLD std::string summary_json(std::vector<TrafficGroup> const& parts) {
   std::vector<JsonValue> rows;
   for (auto const& [traffic, population, group] : parts) {
@@ -289,6 +298,7 @@ CAMBIUM_COLD std::string summary_json(std::vector<TrafficGroup> const& parts) {
     auto successes = group;
     std::erase_if(successes.rows, [](auto const& row) { return !row.result.success; });
     means["mean_time_s"] = mean_of_measure(successes, measures()[measure_index("duration_s")]);
+    means["imposed_hard_braking"] = share_with_hard_braking(group);
     std::vector<JsonValue::Member> row{{"planner", {group.behavior}},
                                        {"situation", {group.set}},
                                        {"traffic", traffic.empty() ? JsonValue{} : JsonValue{traffic}},
@@ -313,9 +323,14 @@ CAMBIUM_COLD std::string summary_json(std::vector<TrafficGroup> const& parts) {
                                     {"speeding", "speeding"},
                                     {"solid_line", "solid_line"},
                                     {"imposed_braking", "imposed_braking"},
+                                    {"imposed_hard_braking", "imposed_hard_braking"},
                                     {"impact_speed", "impact_speed"},
                                     {"mean_time_s", "mean_time_s"},
                                     {"closed_loop_score", "closed_loop_score"},
+                                    {"prediction_error_1s", "prediction_error_1s"},
+                                    {"prediction_error_3s", "prediction_error_3s"},
+                                    {"prediction_error_5s", "prediction_error_5s"},
+                                    {"prediction_brier", "prediction_brier"},
                                     {"ms_per_decision", "mean_ms"}})
       row.push_back({name, std::isfinite(means.at(key)) ? JsonValue{means.at(key)} : JsonValue{}});
     rows.push_back({std::move(row)});
