@@ -74,6 +74,27 @@ std::string execute(std::filesystem::path const& file, char const* sql) {
   return text;
 }
 
+using Predicted = Traffic::WithBehaviors<BehaviorSet<MacroActions, IdmProposal, ConstantAcceleration>>;
+
+/// Believes that others, who drive at 10 m/s from x = their id on, rather stop; but not those who began beyond 290 m.
+struct Doubting : ProposalPlanner<Predicted> {
+  template <class View>
+  [[nodiscard]] std::vector<Alternative> alternatives(View const& view, Memory const&, Workspace& workspace,
+                                                      double duration) const {
+    std::vector<Alternative> all;
+    for (auto const& agent : workspace.predicted().roster().agents) {
+      double const begin = static_cast<double>(index_of(agent.id)), x = begin + 10.0 * view.time(),
+                   stops = begin < 290.0 ? 0.7 : 0.1;
+      auto const add = [&](double probability, double way) {
+        all.push_back({agent.id, probability, {.time = view.time() + duration, .x = x + way, .y = -5.25}});
+      };
+      add(1.0 - stops, 10.0 * duration);
+      add(stops, 0.0);
+    }
+    return all;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("results do not depend on threads, shards or interruptions") {
@@ -231,12 +252,11 @@ TEST_CASE("a result is what an own loop finds") {
 }
 
 TEST_CASE("what a planner expected of the others is compared with what they did") {
-  using Predicted = Traffic::WithBehaviors<BehaviorSet<MacroActions, IdmProposal, ConstantAcceleration>>;
   // On a long road, others begin at `speed` and want to drive at 10 m/s. The planner expects them to keep their speed.
-  auto const run = [](double speed, auto const& planner) {
+  auto const run = [](double speed, auto const& planner, std::vector<double> const& places = {180.0, 220.0, 300.0}) {
     Scenario<Traffic> scenario{.map = support::straight_road(2, 2000.0), .seed = 1};
     scenario.agents.push_back({.position = {200, -1.75}, .speed = 10.0, .id = AgentId{0}});
-    for (double const x : {180.0, 220.0, 300.0})  // the last one is too far away to count
+    for (double const x : places)  // more than 50 m away, it does not count
       scenario.agents.push_back({.position = {x, -5.25},
                                  .speed = speed,
                                  .behavior = IdmClassic{.law = {.desired_speed = 10.0}},
@@ -260,36 +280,50 @@ TEST_CASE("what a planner expected of the others is compared with what they did"
   auto const tree = run(10.0, guessing);
   CHECK(tree.prediction_brier > 0.0);
   CHECK(tree.prediction_brier < 2.0);
+  CHECK(std::isnan(run(10.0, planner, {300.0}).prediction_error_1s));
+  Doubting doubting;
+  doubting.driver.law.desired_speed = 10.0;
+  CHECK(run(10.0, doubting).prediction_brier == doctest::Approx(0.7 * 0.7 + 0.7 * 0.7));
   CHECK(std::isnan(run(10.0, IdmClassic{.law = {.desired_speed = 10.0}}).prediction_error_1s));
 }
 
 TEST_CASE("a Brier score is that of the alternatives, of which the nearest comes true") {
-  detail::PredictionJudge judge;
-  Traffic world(support::straight_road(1, 900.0));
-  auto const id =
-      world.add({.position = {100, -1.75}, .speed = 10.0, .behavior = IdmClassic{.law = {.desired_speed = 10.0}}});
-  auto const at = [&](double x, double probability) {
-    return Alternative{id, probability, {.time = 3.0, .x = x, .y = -1.75, .speed = 10.0}};
+  Traffic world(support::straight_road(2, 900.0));
+  auto const add = [&](double x, double y) {
+    return world.add({.position = {x, y}, .speed = 10.0, .behavior = IdmClassic{.law = {.desired_speed = 10.0}}});
+  };
+  auto const ego = add(100.0, -5.25), id = add(100.0, -1.75), far = add(49.0, -1.75);
+  auto const at = [&](double x, double probability, double time = 3.0) {
+    return Alternative{id, probability, {.time = time, .x = x, .y = -1.75, .speed = 10.0}};
+  };
+  auto const brier_of = [&](std::vector<Alternative> const& all) {
+    detail::PredictionJudge judge;
+    auto copy = world;
+    judge.note(all, copy.time(), judge.nearby(copy.roster(), ego, copy.frame()));
+    RunResult result;
+    for (int i = 0; i < 20; ++i) {
+      REQUIRE(copy.step(0.2));
+      judge.compare(copy);
+      judge.write(result);
+      if (i < 14) CHECK(std::isnan(result.prediction_brier));
+    }
+    return result.prediction_brier;
   };
   // Two ways end in one place.
-  judge.note({at(100.0, 0.2), at(131.0, 0.3), at(150.0, 0.1), at(130.5, 0.4)}, 0.0);
-  RunResult result;
-  for (int i = 0; i < 15; ++i) {
-    judge.write(result);
-    CHECK(std::isnan(result.prediction_brier));
-    REQUIRE(world.step(0.2));
-    judge.compare(world);
+  std::vector all{at(100.0, 0.2), at(131.0, 0.3), at(150.0, 0.1), at(130.5, 0.4)};
+  double const expected = 0.2 * 0.2 + 0.3 * 0.3 + 0.1 * 0.1;
+  CHECK(brier_of(all) == doctest::Approx(expected));
+  for (double const probability : {0.1, 0.9}) {  // of one that is more than 50 m away
+    all.push_back(at(50.0 + 40.0 * probability, probability));
+    all.back().agent = far;
   }
-  judge.write(result);
-  CHECK(result.prediction_brier == doctest::Approx(0.2 * 0.2 + 0.3 * 0.3 + 0.1 * 0.1));
-  detail::PredictionJudge certain;
-  certain.note({at(160.0, 0.2), at(160.5, 0.8)}, world.time());
-  for (int i = 0; i < 15; ++i) {
-    REQUIRE(world.step(0.2));
-    certain.compare(world);
-  }
-  certain.write(result);
-  CHECK(std::isnan(result.prediction_brier));  // one way is no bet
+  CHECK(brier_of(all) == doctest::Approx(expected));
+  CHECK(std::isnan(brier_of({at(160.0, 0.2), at(160.5, 0.8)})));  // one way is no bet
+  // Where it is counts when the ways end, 2 m further.
+  CHECK(brier_of({at(130.8, 0.7, 3.2), at(132.2, 0.3, 3.2)}) == doctest::Approx(0.7 * 0.7 + 0.7 * 0.7));
+  CHECK(brier_of({at(130.8, 0.7), at(132.2, 0.3)}) == doctest::Approx(0.3 * 0.3 + 0.3 * 0.3));
+  CHECK(std::isnan(brier_of({at(120.0, 0.7, 2.0), at(130.0, 0.3, 2.0)})));  // it does not look as far ahead
+  CHECK(std::isnan(brier_of({at(120.0, 0.7), at(130.0, 0.3, 3.2)})));       // nor as far in all ways
 }
 
 TEST_CASE("who leaves the map before its goal has left its way") {

@@ -154,9 +154,14 @@ struct Timed : Behavior {
   void note_prediction(View const& view, MemoryOf<Behavior> const& before, Workspace& workspace) const {
     Behavior const& planner = *this;
     auto& judge = clock->predictions;
-    judge.note(workspace.predicted().roster(), view.id(), planner.foresee(view, before, workspace, {}));
-    if constexpr (requires { planner.alternatives(view, before, workspace, 1.0); })
-      judge.note(planner.alternatives(view, before, workspace, judge.span_of_alternatives), view.time());
+    auto const course = planner.foresee(view, before, workspace, {});
+    auto const& roster = workspace.predicted().roster();
+    judge.note(roster, view.id(), course);
+    if constexpr (requires { planner.alternatives(view, before, workspace, 1.0); }) {
+      if (course.empty()) return;
+      auto const asked = judge.nearby(roster, view.id(), course.front());
+      judge.note(planner.alternatives(view, before, workspace, judge.span_of_alternatives), view.time(), asked);
+    }
   }
 };
 

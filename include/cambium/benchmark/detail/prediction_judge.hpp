@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
-#include <limits>
+#include <iterator>
+#include <utility>
 #include <vector>
 
 #include "cambium/benchmark/run_result.hpp"
@@ -16,31 +18,43 @@
 namespace cambium::detail {
 
 /// Compares what the planner of a run expects of the others with what they then do. Once a second it is asked about
-/// those within 50 m: where they will be after 1, 3 and 5 s, and if it thinks of several ways, how likely each is.
+/// those within 50 m: where they will be after 1, 3 and 5 s, and if it thinks of several ways, how likely each is. What
+/// it does not foresee that far is not judged.
 class PredictionJudge {
  public:
   /// Whether the planner is to be asked at this time [s].
   [[nodiscard]] bool asks(double time) const { return time >= next_ - same_time; }
 
+  /// Which agents of `roster` drive within 50 m of `ego`, of which `now` is the frame.
+  template <class Roster, class Frame>
+  [[nodiscard]] static std::vector<AgentId> nearby(Roster const& roster, AgentId ego, Frame const& now) {
+    std::vector<AgentId> ids;
+    auto const own = roster.slot_of(ego);
+    if (!own) return ids;
+    auto const& from = now.agents[*own].state;
+    for (Slot slot{}; index_of(slot) < roster.agents.size(); ++slot) {
+      auto const& other = now.agents[slot];
+      if (slot != *own && other.status == AgentStatus::driving &&
+          portable::hypot(other.state.x - from.x, other.state.y - from.y) <= range)
+        ids.push_back(roster.agents[slot].id);
+    }
+    return ids;
+  }
+
   /// Notes the frames that it expects, of agents whose ids are those of `roster`.
   template <class Roster, class Frame>
   void note(Roster const& roster, AgentId ego, std::vector<Frame> const& course) {
-    auto const own = roster.slot_of(ego);
-    if (!own || course.empty()) return;
+    if (!roster.slot_of(ego) || course.empty()) return;
     double const now = course.front().time;
     next_ = now + interval;
-    auto const& from = course.front().agents[*own].state;
+    auto const asked = nearby(roster, ego, course.front());
     for (std::size_t span = 0; span < spans.size(); ++span) {
       double const time = now + spans[span];
       auto const then = std::ranges::find_if(course, [&](auto const& frame) { return frame.time > time - same_time; });
       if (then == course.end()) continue;  // it does not look as far ahead
-      for (Slot slot{}; index_of(slot) < roster.agents.size(); ++slot) {
-        auto const& start = course.front().agents[slot];
-        auto const& end = then->agents[slot];
-        if (slot == *own || start.status != AgentStatus::driving || end.status != AgentStatus::driving ||
-            portable::hypot(start.state.x - from.x, start.state.y - from.y) > range)
-          continue;
-        courses_.push_back({then->time, span, roster.agents[slot].id, end.state.x, end.state.y});
+      for (auto const id : asked) {
+        auto const& end = then->agents[*roster.slot_of(id)];
+        if (end.status == AgentStatus::driving) courses_.push_back({then->time, span, id, end.state.x, end.state.y});
       }
     }
   }
@@ -48,8 +62,18 @@ class PredictionJudge {
   /// How far ahead alternatives are asked for [s].
   static constexpr double span_of_alternatives = 3.0;
 
-  void note(std::vector<Alternative> const& all, double time) {
-    if (!all.empty()) alternatives_.push_back({time + span_of_alternatives, all});
+  /// Notes the ways in which, at `time` [s], it thinks that the agents `asked` may go on. The ways of an agent are
+  /// judged when they end, if they end together.
+  void note(std::vector<Alternative> const& all, double time, std::vector<AgentId> const& asked) {
+    for (auto const id : asked) {
+      std::vector<Alternative> ways;
+      std::ranges::copy_if(all, std::back_inserter(ways), [&](Alternative const& way) { return way.agent == id; });
+      if (ways.empty()) continue;
+      double const end = ways.front().after.time;
+      bool const is_together =
+          std::ranges::all_of(ways, [&](Alternative const& way) { return std::abs(way.after.time - end) < same_time; });
+      if (is_together && end > time + span_of_alternatives - same_time) alternatives_.push_back({end, std::move(ways)});
+    }
   }
 
   /// Compares what was expected for the present time.
@@ -66,10 +90,7 @@ class PredictionJudge {
     });
     std::erase_if(alternatives_, [&](Alternatives const& asked) {
       if (asked.time > now + same_time) return false;
-      for (auto const& one : asked.all) {
-        auto const is_first = [&](Alternative const& other) { return other.agent == one.agent; };
-        if (&*std::ranges::find_if(asked.all, is_first) == &one) weigh(world, asked, one.agent);
-      }
+      weigh(world, asked);
       return true;
     });
   }
@@ -94,9 +115,10 @@ class PredictionJudge {
     AgentId agent;
     double x, y;
   };
+  /// Of one agent.
   struct Alternatives {
     double time;
-    std::vector<Alternative> all;
+    std::vector<Alternative> ways;
   };
   struct Seen {
     bool is_known = false;
@@ -114,15 +136,14 @@ class PredictionJudge {
     return {true, state.x - back * along.cos, state.y - back * along.sin};
   }
 
-  /// Adds the Brier score (Brier 1950) of the ways of `agent`: the nearest to where it is has come true. Alternatives
+  /// Adds the Brier score (Brier 1950) of the ways of an agent: the nearest to where it is has come true. Alternatives
   /// that end in the same place are one way. Who has only one, or only one that is not negligible, is not judged.
   template <class World>
-  void weigh(World const& world, Alternatives const& asked, AgentId agent) {
-    auto const seen = place(world, agent, asked.time);
+  void weigh(World const& world, Alternatives const& asked) {
+    auto const seen = place(world, asked.ways.front().agent, asked.time);
     if (!seen.is_known) return;
     std::vector<Alternative> ways;
-    for (auto const& one : asked.all) {
-      if (one.agent != agent) continue;
+    for (auto const& one : asked.ways) {
       auto const same = std::ranges::find_if(ways, [&](Alternative const& way) {
         return portable::hypot(way.after.x - one.after.x, way.after.y - one.after.y) < same_place;
       });
