@@ -161,30 +161,14 @@ struct RunResult {
   }
 
   /// Whether more or less of a field is better. Outcomes, safety and the closed-loop score are judged. Speeds and gaps
-  /// are not, because a good driver may have more or less; nor are time-outs, which already lack success.
+  /// are not, because a good driver may have more or less; nor are time-outs, which already lack success, and errors of
+  /// predictions, which also depend on where the ego drives.
   [[nodiscard]] static Better better(std::string_view field) {
     for (char const* more : {"success", "rss_compliance", "closed_loop_score"})
       if (field == more) return Better::more;
-    for (char const* less : {"collision",
-                             "at_fault",
-                             "off_road",
-                             "off_route",
-                             "error",
-                             "hard_brakings",
-                             "others_collided",
-                             "infeasible",
-                             "red_light",
-                             "stop_sign",
-                             "right_of_way",
-                             "wrong_way",
-                             "speeding",
-                             "solid_line",
-                             "impact_speed",
-                             "imposed_braking",
-                             "prediction_error_1s",
-                             "prediction_error_3s",
-                             "prediction_error_5s",
-                             "prediction_brier"})
+    for (char const* less : {"collision", "at_fault", "off_road", "off_route", "error", "hard_brakings",
+                             "others_collided", "infeasible", "red_light", "stop_sign", "right_of_way", "wrong_way",
+                             "speeding", "solid_line", "impact_speed", "imposed_braking"})
       if (field == less) return Better::less;
     return Better::neither;
   }
