@@ -127,7 +127,9 @@ struct Temperament {
   double reaction = 0.8;              ///< `Signals::reaction` [s]
   double rolling_speed = 0.0;         ///< `Signals::rolling_speed` [m/s]
 
-  /// A temperament near this one: each number is drawn evenly within 25 % of its own, the speed factor within 10 %.
+  /// A temperament near this one: most numbers are drawn evenly within 25 % of their own, the speed factor within 10 %.
+  /// Not drawn are `bias`, `jerk`, and the desired speed, the exponent, and the lowest and highest acceleration of
+  /// `idm`. What is 0 stays 0.
   [[nodiscard]] Temperament drawn_around(RandomStream& random) const {
     auto one = *this;
     auto const vary = [&](double& number, double share = 0.25) {

@@ -13,8 +13,8 @@
 
 namespace cambium {
 
-/// How the drivers of a recipe's vehicles differ from those that it gives: each number of a driver is drawn around that
-/// of its population.
+/// How the drivers of a recipe's vehicles differ from those that it gives: most numbers of a driver are drawn around
+/// those of its population, see `presets::Temperament::drawn_around`.
 ///
 /// - `as_given`: not at all;
 /// - `timid`, `aggressive`: the temperaments of these names (`presets::Temperament`);
