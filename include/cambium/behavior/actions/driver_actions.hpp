@@ -7,6 +7,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/heed/bends.hpp"
 #include "cambium/behavior/heed/signals.hpp"
+#include "cambium/behavior/heed/speed_limit.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/core/parameters.hpp"
 
@@ -16,11 +17,11 @@ namespace cambium {
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
 /// without finding out by itself how that is done. A change that leaves the lane is completed first, keeping the gap.
 /// Close behind a road user that stands, a driver that does not change lanes by itself keeps a gap that leaves room for
-/// a change (`LaneChangeCourse::may_pass`), unless pedestrians are in the world. The macro actions slow down for bends
-/// and stop at lights, whatever the driver does.
+/// a change (`LaneChangeCourse::may_pass`), unless pedestrians are in the world. The macro actions heed the
+/// speed limit, bends and lights, whatever the driver does.
 template <BehaviorModel Driver>
 struct DriverActions {
-  using Macro = BasicMacroActions<Idm, Bends, Signals>;
+  using Macro = BasicMacroActions<Idm, Bends, Signals, SpeedLimit>;
   static constexpr std::uint8_t drive = Macro::nothing;  ///< chosen instead of the number of a macro action
 
   struct Memory {

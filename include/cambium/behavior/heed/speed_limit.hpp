@@ -26,6 +26,26 @@ struct SpeedLimit {
         detail::permitted_speed(view.corridor(), view.place().s, speed, law.comfortable_deceleration);
     return factor * permitted;
   }
+
+  /// Brakes with comfort where the law alone comes to a lower limit ahead too slowly. O(limits within the braking
+  /// distance).
+  template <class View, class Limits>
+  void heed(View const& view, Limits& limits, double dt) const {
+    auto const& changes = view.corridor().speed_limits;
+    double const s = view.place().s;
+    if (changes.empty() || changes.back().begin <= s) [[likely]]
+      return;
+    double const speed = limits.response().speed(), braking = limits.law().comfortable_deceleration;
+    double const reach =
+        s + speed * dt +
+        stopping_distance(speed, std::max(0.0, limits.jerk_bound.acceleration), braking, limits.jerk_bound);
+    for (auto const& change : changes) {
+      if (change.begin <= s) continue;
+      if (change.begin > reach) break;
+      limits.bound(
+          motion_before_bend(speed, change.begin - s, factor * change.limit, braking, braking, dt, limits.jerk_bound));
+    }
+  }
 };
 
 }  // namespace cambium

@@ -328,7 +328,8 @@ struct FrenetPlanner {
       }
     double const closeness = lanes > 0 ? std::clamp(1.0 - way / (lanes * route_horizon), 0.0, 1.0) : 0.0;
     double const route = costs.route * lanes * (1.0 + costs.route_urgency * closeness);
-    double const wanted = std::min(desired_speed, corridor.speed_limit_at(at.s));
+    double const wanted =
+        std::min(desired_speed, detail::permitted_speed(corridor, at.s, now.speed, comfortable_deceleration));
     constexpr double late = 2.0;  // who slows down early is too slow for the lane beside
     double fastest = wanted;
     auto stop = std::numeric_limits<double>::infinity();
