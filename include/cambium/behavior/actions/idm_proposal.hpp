@@ -138,6 +138,7 @@ struct BasicProposal {
         if (!leaves_room(view, view.place().corridor, other, offset, clearance))
           limits.heed(detail::constraint_of<Response>(view, other));
       });
+    if (lateral.leaves_room) lateral.heed_lane_end(view, limits);
     heeds.heed(view, memory.heeds, limits, dt);
     auto motion = limits.motion(dt);
     if (lateral.leaves_room && next) motion = lateral.course.leave_room(view, *next, motion, dt);

@@ -299,6 +299,12 @@ struct ChangeLanes {
     return left ? lane.may_change_left(s) : lane.may_change_right(s);
   }
 
+  /// Adds the end of a lane that it must leave, so that it stops where the changes still fit.
+  template <class View, class Limits>
+  void heed_lane_end(View const& view, Limits& limits) const {
+    add_stop(limits, distance_to_stop(view, view.place()));
+  }
+
  private:
   template <class View>
   [[nodiscard]] static bool is_beside(View const& view, CorridorId target) {
@@ -497,7 +503,7 @@ struct ChangeLanes {
     auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
     add_leader(view, limits, leader, at, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
-    add_stop(limits, distance_to_stop(view, at));
+    heed_lane_end(view, limits);
   }
 
   /// `limits` with those that count during a change.
@@ -514,7 +520,7 @@ struct ChangeLanes {
     };
     if (change.target == at.corridor) {
       add_leader(view, limits, leader, at, true);
-      add_stop(limits, distance_to_stop(view, at));
+      heed_lane_end(view, limits);
       // Where the body extends over a border, or its front end still swings out to it, the leader there counts, too.
       constexpr double soon = 3.0;  // [m]
       auto const sides = corridor.widths_at(at.s, at.segment);
