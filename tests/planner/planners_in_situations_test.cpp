@@ -1,5 +1,6 @@
 // Laws of all planners where driving is harder: before a bend, behind a standing vehicle, at a merge, behind a slow
 // leader.
+#include <map>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -9,12 +10,14 @@
 #include "cambium/behavior/actions/driver_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/map/building/road_plan.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/merging_site.hpp"
 #include "planner/planner_fixtures.hpp"
 #include "support/scale.hpp"
+#include "support/who_yields.hpp"
 
 using namespace planner_fixtures;
 
@@ -293,6 +296,69 @@ TEST_CASE("a policy tree stops at a red light, and may drive by the rules") {
   double const way = std::hypot(world.state(ego).x - pose.x, world.state(ego).y - pose.y);
   CHECK(way > 45.0);
   CHECK(way < 60.0);
+}
+
+namespace {
+
+/// Ego comes to a junction, 12 m before its way crosses that of agent 1, who goes first and is 30 m away.
+template <class Planner>
+auto before_crossing() {
+  support::WhoYields const at;
+  World<BehaviorSet<Planner, UrbanDriver>, InterpolateExecution, SingleTrack> world(at.map);
+  auto const add = [&](std::pair<LaneId, double> const& place, map::Route const& route, double speed,
+                       auto const& behavior) {
+    auto const pose = at.map->lane(place.first).path.pose(place.second);
+    world.add(
+        {.position = pose.position(), .heading = pose.heading, .speed = speed, .behavior = behavior, .route = route});
+  };
+  add(at.own_place(12.0), at.own, 6.0, Planner{});
+  add(at.other_place(30.0), at.other, 10.0, UrbanDriver{.law = {.desired_speed = 10.0}});
+  return world;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("whoever goes first is expected to drive on whatever ego does, if others insist", Planner,
+                   RuledSearch, RuledTree) {
+  auto world = before_crossing<Planner>();
+  auto const slowest = [&](bool insist) {  // of agent 1, whatever ego does
+    Planner planner{.others_insist = insist};
+    typename Planner::Workspace workspace;
+    auto const report = planner.think(world.observe(ego), {}, workspace);
+    auto const slot = workspace.predicted().slot_of(AgentId{1});
+    double lowest = 1e9;
+    for (std::size_t number = 0; number < report.candidates.size(); ++number)
+      for (auto const& frame : planner.foresee(world.observe(ego), {}, workspace, number))
+        if (frame.time < 3.0) lowest = std::min(lowest, frame.agents[slot].state.speed);
+    return lowest;
+  };
+  CHECK(slowest(true) > 9.0);
+  CHECK(slowest(false) < 8.0);
+}
+
+TEST_CASE_TEMPLATE("the ways in which it thinks that others may go on have probabilities, and one time", Planner,
+                   RuledLearning, RuledTree) {
+  Planner planner;
+  World<BehaviorSet<Planner, UrbanDriver>, InterpolateExecution, SingleTrack> world(support::straight_road(2, 900.0));
+  world.add({.position = {80, -5.25}, .speed = 14.0, .behavior = planner});
+  for (int i = 0; i < 4; ++i) world.add({.position = {60.0 + 20.0 * i, -1.75}, .speed = 12.0});
+  world.add({.position = {100, -5.25}, .speed = 12.0});
+  auto const far = world.add({.position = {500, -5.25}, .speed = 12.0});
+  typename Planner::Workspace workspace;
+  (void)planner.think(world.observe(ego), {}, workspace);
+  std::map<AgentId, double> sums;
+  for (auto const& way : planner.alternatives(world.observe(ego), {}, workspace, 3.0)) {
+    CHECK(way.probability >= 0.0);
+    CHECK(way.after.time == doctest::Approx(world.time() + 3.0));
+    CHECK(way.after.x > world.state(way.agent).x);
+    sums[way.agent] += way.probability;
+  }
+  CHECK(sums.size() > 1);
+  for (auto const& [agent, sum] : sums) {
+    CHECK(sum == doctest::Approx(1.0));
+    CHECK(agent != far);
+    CHECK(agent != ego);
+  }
 }
 
 TEST_CASE("whoever drives on a through lane is expected to open no gap, unless it brakes or goodwill is expected") {

@@ -409,9 +409,15 @@ TEST_CASE_TEMPLATE("its candidates are explained by their paths, and by whom the
   REQUIRE(report.chosen);
   for (std::size_t k = 0; k < report.course.size(); ++k)
     CHECK(report.candidates[*report.chosen].path[k] == report.course[k].agents[slot].state);
-  // Without the slow one it is not in the reasons. The workspace and the report must belong together.
-  world.remove(slow);
+  // The workspace and the report must belong together.
   typename Planner::Workspace other;
+  CHECK_THROWS_AS(explain(planner, world.observe(ego), {}, other, report), SearchError);  // it has not planned yet
+  put(world, ego, [](auto& state) { state.speed = 10.0; });
+  (void)planner.think(world.observe(ego), {}, workspace);
+  CHECK_THROWS_AS(explain(planner, world.observe(ego), {}, workspace, report), SearchError);
+  put(world, ego, [](auto& state) { state.speed = 15.0; });
+  // Without the slow one it is not in the reasons.
+  world.remove(slow);
   report = planner.think(world.observe(ego), {}, other);
   CHECK_THROWS_AS(explain(planner, world.observe(ego), {}, workspace, report), SearchError);
   report = planner.think(world.observe(ego), {}, workspace);
@@ -476,6 +482,19 @@ TEST_CASE_TEMPLATE("with hardly any time it scores one candidate and plans", Pla
     CHECK(report.is_cut_short);
   CHECK(report.course.back().time > world.time() + 1.0);
   for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
+}
+
+TEST_CASE_TEMPLATE("it is less decided where two lanes are as good as each other", Planner, Proposal, PolicyTree,
+                   Frenet) {
+  auto const decided = [](bool is_left_free) {
+    Planner planner;
+    Sim<Planner> world(support::straight_road(3, 900.0));
+    world.add({.position = {80, -5.25}, .speed = 15.0, .behavior = planner});
+    world.add({.position = {125, -5.25}, .speed = 4.0, .behavior = IdmClassic{.law = {.desired_speed = 4.0}}});
+    if (!is_left_free) world.add({.position = {80, -1.75}, .speed = 15.0});
+    return report_of(planner, world).decidedness;
+  };
+  CHECK(decided(true) < 0.5 * decided(false));
 }
 
 TEST_CASE("decidedness is the lead over the next best score as a share of their range") {

@@ -46,6 +46,12 @@ concept MotionState = std::copyable<S> && std::is_trivially_copyable_v<S> && req
 };
 static_assert(MotionState<State>);
 
+/// The fields of `BasicState` alone.
+template <MotionState S>
+[[nodiscard]] auto plain_state(S const& s) {
+  return BasicState<decltype(s.time + s.speed)>{s.time, s.x, s.y, s.heading, s.speed};
+}
+
 /// True if all fields of `BasicState` are finite.
 template <MotionState S>
 [[nodiscard]] bool is_finite(S const& s) {

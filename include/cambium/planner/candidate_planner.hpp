@@ -46,8 +46,14 @@ struct CandidateWorkspace {
     return true;
   }
 
-  /// The world to whose agents the frames of `foresee` belong.
-  [[nodiscard]] World const& predicted() const { return *world; }
+  /// The world to whose agents the frames of `foresee` belong. Throws `SearchError` before the first plan.
+  [[nodiscard]] World const& predicted() const {
+    if (!world) throw SearchError("workspace", "nothing has been planned yet", "call `think` first");
+    return *world;
+  }
+
+  /// How many candidates it has compared.
+  [[nodiscard]] std::size_t compared() const { return candidates.size(); }
 
   /// Whether the budget lasts for another candidate after `done` of them; it always lasts for the first one.
   template <class Budget>

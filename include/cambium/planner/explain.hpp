@@ -16,8 +16,9 @@
 
 namespace cambium {
 
-/// Adds to each candidate of a report its path, and because of whom it scores as it does: the agent that is soonest
-/// before or after ego in one place, up to 3 s apart. Where ego is includes the 5 m ahead of it, so that it may also
+/// Adds to each candidate of a report its path, and the agent because of whom it can be no better: the one that is
+/// soonest before or after ego in one place, up to 3 s apart, as the planner foresees it (deviations that it also
+/// considers do not count). Where ego is includes the 5 m ahead of it, so that it may also
 /// stand before somebody. Those who start behind ego in its own strip of road do not count. Call it after the `think`
 /// that made the report, with the same arguments. Throws `SearchError` if that was not the last use of the workspace.
 /// O(candidates x steps^2 x agents).
@@ -27,7 +28,8 @@ void explain(Planner const& planner, View const& view, typename Planner::Memory 
   constexpr double farthest = 3.0, ahead = 5.0;  // [s], [m]
   auto const& roster = workspace.predicted().roster();
   auto const ego = roster.slot_of(view.id());
-  if (!ego || report.course.empty() || report.agents != detail::ids_of(workspace.predicted()))
+  if (!ego || report.course.empty() || report.agents != detail::ids_of(workspace.predicted()) ||
+      report.candidates.size() != workspace.compared() || report.course != planner.foresee(view, memory, workspace, {}))
     throw SearchError("explain", "the workspace was not used last for this report", "call it right after `think`");
   std::vector<Slot> others;
   agents_to_avoid(roster, report.course.front(), *ego, others);
@@ -37,10 +39,7 @@ void explain(Planner const& planner, View const& view, typename Planner::Memory 
     candidate.path.clear();
     candidate.because = none<AgentId>;
     candidate.time_apart = std::numeric_limits<double>::infinity();
-    for (auto const& frame : course) {
-      auto const& own = frame.agents[*ego].state;
-      candidate.path.push_back({own.time, own.x, own.y, own.heading, own.speed});
-    }
+    for (auto const& frame : course) candidate.path.push_back(plain_state(frame.agents[*ego].state));
     for (auto const& frame : course) {
       auto const& own = frame.agents[*ego].state;
       auto box = geometry::box_of(roster.agents[*ego].shape, own);

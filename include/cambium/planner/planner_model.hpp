@@ -43,7 +43,7 @@ struct PlannerReport {
   std::vector<PlannerCandidate> candidates;
   std::optional<std::size_t> chosen;  ///< among the candidates; empty if none may be driven: ego brakes
   /// How clearly the choice wins, from 0 (another candidate is as good) to 1 (nothing comes close). Candidates that
-  /// begin with the same action, as in a policy tree, are one choice.
+  /// lead to the same lane at the same speed, or begin with the same action, are one choice.
   double decidedness = 0.0;
   bool is_cut_short = false;                      ///< the budget ended before all candidates were scored
   std::vector<typename World::FrameType> course;  ///< all agents as planned, step by step from now to the horizon
@@ -73,7 +73,8 @@ void is_report(PlannerReport<World, Memory> const&);
 ///
 /// `foresee(view, memory, workspace, candidate)`, called after `plan` or `think` with the same arguments, returns what
 /// it expects: the frames of all agents, now and after each step to the horizon, if ego drives that candidate (by its
-/// number), or as the planner has decided. `workspace.predicted()` is the world to which the frames belong.
+/// number), or as the planner has decided. `workspace.predicted()` is the world to which the frames belong,
+/// `workspace.compared()` the number of candidates.
 /// A planner that expects more than one course of the others may have `alternatives(view, memory, workspace,
 /// duration)`: where they may be after `duration` [s] then, as a list of `Alternative`.
 template <class P, class View>
@@ -86,6 +87,7 @@ concept PlannerModel = BehaviorModel<P> && std::default_initializable<typename P
     planner.foresee(view, memory, workspace, std::optional<std::size_t>())
     } -> std::same_as<decltype(P::Report::course)>;
   workspace.predicted().roster();
+  { workspace.compared() } -> std::convertible_to<std::size_t>;
 };
 
 /// The lead of the chosen candidate's score over the best of its rivals that may be driven, as a share of the range of

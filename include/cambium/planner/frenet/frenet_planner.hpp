@@ -261,6 +261,11 @@ struct FrenetPlanner {
     return course;
   }
 
+  /// See `CandidatePlanner`.
+  [[nodiscard]] static bool begin_alike(FrenetCandidate const& a, FrenetCandidate const& b) {
+    return a.corridor == b.corridor && a.kind == b.kind && a.speed == b.speed;
+  }
+
   /// "follow in 3 s, 12 m/s at 0.7 m, left lane".
   template <class View>
   [[nodiscard]] PlannerCandidate entry(View const& view, Workspace const& workspace, FrenetCandidate const& c) const {

@@ -211,16 +211,17 @@ struct Mcts {
     std::vector<Alternative> all;
     auto& domain = workspace.domain();
     auto const& world = domain.world();
+    auto const near = learnt_about(world, domain.slots()[0]);
     for (std::size_t number = 0; number < others.hypotheses(); ++number) {
       auto state = workspace.decided();
       for (auto const& unknown : domain.unknowns()) others.assume(*memory_at(state.frame, unknown.slot), number, 0.5);
       double const end = world.time() + duration;
       while (state.frame.time < end - same_time) domain.advance(state, std::min(domain.dt(), end - state.frame.time));
       for (auto const& unknown : domain.unknowns()) {
+        if (std::ranges::find(near, unknown.slot) == near.end()) continue;
+        auto const id = world.roster().agents[unknown.slot].id;
         auto const& then = state.frame.agents[unknown.slot].state;
-        all.push_back({world.roster().agents[unknown.slot].id,
-                       unknown.belief.probability(number),
-                       {then.time, then.x, then.y, then.heading, then.speed}});
+        all.push_back({id, unknown.belief.probability(number), plain_state(then)});
       }
     }
     return all;
@@ -280,6 +281,14 @@ struct Mcts {
            detail::likes_its_speed(world, slot);
   }
 
+  /// The nearest agents that do not choose with ego.
+  [[nodiscard]] std::vector<Slot> learnt_about(PredictionWorld const& world, Slot ego) const {
+    constexpr std::size_t model = PredictionWorld::Behaviors::template index<Others>;
+    auto near = nearest_agents(world, ego, Memory::capacity, belief.range);
+    std::erase_if(near, [&](Slot slot) { return world.frame().agents[slot].memory.index() != model; });
+    return near;
+  }
+
   [[nodiscard]] static MemoryOf<Others>* memory_at(typename PredictionWorld::FrameType& frame, Slot slot) {
     return std::get_if<PredictionWorld::Behaviors::template index<Others>>(&frame.agents[slot].memory);
   }
@@ -290,8 +299,7 @@ struct Mcts {
   /// one that comes even later, by up to a second, others are expected to come as late.
   [[nodiscard]] auto learn(PredictionWorld const& world, Slot ego, Memory& memory, double dt) const {
     auto frame = world.frame();
-    auto near = nearest_agents(world, ego, Memory::capacity, belief.range);
-    std::erase_if(near, [&](Slot slot) { return memory_at(frame, slot) == nullptr; });  // they choose themselves
+    auto const near = learnt_about(world, ego);
     std::size_t const hypotheses = others.hypotheses();
     bool const has_expected = memory.expected_at > memory.observed_at;
     double const since = world.time() - memory.observed_at;

@@ -113,14 +113,19 @@ class MctsWorkspace {
 
   /// The search after a run; the first one if there are several threads. Throws `SearchError` before the first run.
   [[nodiscard]] Search& search() {
-    if (trees_.searches().empty())
-      throw SearchError("workspace", "nothing has been searched yet", "call `think` first");
+    require_run();
     return trees_.searches()[0];
   }
   [[nodiscard]] Domain& domain() { return search().domain(); }
 
-  /// The world to whose agents the frames of `play` belong. Precondition: a search has been run.
-  [[nodiscard]] World const& predicted() const { return trees_.searches()[0].domain().world(); }
+  /// The world to whose agents the frames of `play` belong. Throws `SearchError` before the first run.
+  [[nodiscard]] World const& predicted() const {
+    require_run();
+    return trees_.searches()[0].domain().world();
+  }
+
+  /// How many decisions of ego it has compared.
+  [[nodiscard]] std::size_t compared() const { return trees_.result().of(0).size(); }
 
   /// The state from which the agents go on with what they have decided.
   [[nodiscard]] typename Domain::State decided() {
@@ -215,6 +220,11 @@ class MctsWorkspace {
   }
 
  private:
+  void require_run() const {
+    if (trees_.searches().empty())
+      throw SearchError("workspace", "nothing has been searched yet", "call `think` first");
+  }
+
   ParallelTreeSearch<Search> trees_;
   bool keeps_ = false;  ///< the next run may continue the tree
   typename Domain::State state_;

@@ -182,7 +182,7 @@ struct PolicyTreePlanner {
       (void)simulate(workspace, memory, workspace.candidates[*workspace.chosen].sequence, deviation, &course, never);
       auto const k = static_cast<std::size_t>(std::lround(duration / step));
       auto const& then = course[std::min(k, course.size() - 1)].agents[slot].state;
-      all.push_back({agents[slot].id, probability, {then.time, then.x, then.y, then.heading, then.speed}});
+      all.push_back({agents[slot].id, probability, plain_state(then)});
     };
     for (auto at = workspace.intentions.begin(); at != workspace.intentions.end();) {
       auto const end = std::find_if(at, workspace.intentions.end(), [&](auto const& i) { return i.slot != at->slot; });

@@ -173,6 +173,11 @@ struct ProposalPlanner {
     return think_by_candidates(*this, view, memory, workspace);
   }
 
+  /// See `CandidatePlanner`.
+  [[nodiscard]] static bool begin_alike(ProposalScore const& a, ProposalScore const& b) {
+    return a.towards == b.towards && a.speed_share == b.speed_share;
+  }
+
   /// See `CandidatePlanner`, also for `drive`, `foresee` and `entry`.
   template <class View>
   [[nodiscard]] SearchProblem compare(View const& view, Memory const& memory, Workspace& workspace,
