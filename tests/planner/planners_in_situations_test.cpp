@@ -255,6 +255,27 @@ TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, 
   CHECK(arrived >= count - count / 8);
 }
 
+TEST_CASE_TEMPLATE("from a standstill shortly before its exit, it crosses the lanes that it needs", Planner, RuledTree,
+                   Proposal, Frenet) {
+  auto const map = support::own_map("highway_exit.xodr");
+  auto const ramp = map->find_lane("2", 20.0, -1);
+  for (double const s : {525.0, 545.0}) {
+    CAPTURE(s);
+    World<BehaviorSet<Planner>, InterpolateExecution, SingleTrack> world(map);
+    auto const lane = map->find_lane("1", s, -2);
+    auto const pose = map->lane(lane).path.pose(s - 390.0);
+    world.add({.position = pose.position(),
+               .heading = pose.heading,
+               .behavior = Planner{},
+               .goal = ReachLane{.lane = ramp, .from = 20.0}});
+    while (world.time() < 40.0 && !world.reached_goal(ego)) {
+      REQUIRE(world.step(0.2));
+      REQUIRE_FALSE(OffRoad{}(world, Slot{}));
+    }
+    CHECK(world.time() < 40.0);
+  }
+}
+
 TEST_CASE_TEMPLATE(
     "a planner that may drive by the rules of junctions gets through them, without a collision of its own", Planner,
     RuledSearch, RuledLearning, RuledTree) {

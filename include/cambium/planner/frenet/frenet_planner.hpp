@@ -128,7 +128,7 @@ struct FrenetPlanner {
   double step = 0.2;
   double low_speed = 4.0;
   double route_horizon = 300.0;
-  double room_to_change = 25.0;
+  double room_to_change = 32.0;
   double comfortable_deceleration = 2.0;
   Budget budget{};
   Own terms{};
@@ -339,7 +339,10 @@ struct FrenetPlanner {
     double fastest = wanted;
     auto stop = std::numeric_limits<double>::infinity();
     if (std::isfinite(end) && is_dead_end(corridor, end)) {
-      stop = end - view.shape().front - minimum_gap - lanes * room_to_change;
+      double const last = end - view.shape().front - minimum_gap;
+      stop = last - lanes * room_to_change;
+      if (number != view.place().corridor)
+        stop = std::max(stop, std::min(last, at.s + room_to_change));  // else it waits
       if (!corridor.reaches_destination)
         fastest = std::min(wanted, std::sqrt(2.0 * late * comfortable_deceleration * std::max(0.0, stop - at.s)));
     }
@@ -401,8 +404,8 @@ struct FrenetPlanner {
     return is_known ? fastest : infinite;
   }
 
-  /// Whether no follower on a corridor has to brake hard for ego. It is assumed to drive by `Acc`, since IDM brakes
-  /// hard for gaps that people accept. Who is beside is left to the check for collisions.
+  /// Whether no follower on a corridor has to brake hard for ego. It is assumed to drive by `Acc`: by IDM, which brakes
+  /// hard for gaps that people accept, dense traffic has none. Who is beside is left to the check for collisions.
   template <class View>
   [[nodiscard]] bool may_enter(View const& view, CorridorId number) const {
     if (number == view.place().corridor) return true;
