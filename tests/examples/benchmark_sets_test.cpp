@@ -39,6 +39,24 @@ TEST_CASE(
   CHECK(sets == std::set<std::string>{"lane_change_0", "lane_change_20", "lane_change_40", "lane_change_80"});
 }
 
+TEST_CASE("planners turn left before oncoming traffic that yields, and before such that does not") {
+  Program const program("benchmark");
+  browser::TemporaryFolder const folder;
+  program.output({"--set", "left_turn", "--behaviors", "idm,policy_tree,frenet", "--scenarios", "6", "--replays",
+                  "none", "--db", folder.file("left_turn.db"), "--json", folder.file("rows.json")});
+  auto const rows = nlohmann::json::parse(content_of(folder.file("rows.json")));
+  CHECK(rows.size() == 6);
+  int hit = 0;
+  for (auto const& row : rows) {
+    CAPTURE(row.dump());
+    if (row["behavior"] == "idm")
+      hit += row["collision"] > 0.0;  // it gives way to nobody
+    else
+      CHECK(row["success"] == 1.0);
+  }
+  CHECK(hit > 0);
+}
+
 TEST_CASE("the exam has twenty situations among five populations, and other scenarios to train on") {
   Program const program("benchmark");
   browser::TemporaryFolder const folder;
