@@ -55,7 +55,7 @@ struct DriverActions {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  Macro macro{};
+  Macro macro{.stops_before_end = true};
   Driver driver{};
 
   static constexpr char const* name = "driver_actions";

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -108,6 +109,7 @@ struct BasicMacroActions {
   [[no_unique_address]] Heeding<Heeds...> heeds{};
   LaneChangeCourse course{};
   double safe_deceleration = 4.0;
+  bool stops_before_end = false;
 
   static constexpr char const* name = "macro_actions";
   static constexpr char const* summary =
@@ -126,7 +128,9 @@ struct BasicMacroActions {
         parameter("heeds", &P::heeds, "what each action heeds besides other road users"),
         parameter("course", &P::course, "how long a change takes"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0, 50},
-                  "no change for which the new follower has to brake harder by IDM"));
+                  "no change for which the new follower has to brake harder by IDM"),
+        parameter("stops_before_end", &P::stops_before_end,
+                  "stops in a lane that it must leave where the changes still fit, unless a change is under way"));
   }
 
   void check(std::string const& where) const {
@@ -257,6 +261,10 @@ struct BasicMacroActions {
     if (keeps_gap && stays)
       if (auto const next = view.ahead({.merging = limits.merging}))
         motion = course.leave_room(view, *next, motion, dt);
+    constexpr double braking = 3.0;  // [m/s^2]
+    if (stops_before_end && stays)
+      if (double const way = course.distance_to_stop(view, view.place()); std::isfinite(way))
+        limits.bound(motion_before_stop(speed, std::max(0.0, way), braking, braking, dt));
     return limits.within(motion, dt);
   }
 

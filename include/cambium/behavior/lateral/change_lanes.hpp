@@ -203,7 +203,7 @@ struct ChangeLanes {
     if (memory.lane.adrift) [[unlikely]]
       enter(view, memory);
     if (memory.change.target == home && speed < standing_speed &&
-        distance_to_stop(view, view.place()) < limits.law().minimum_gap + 1)
+        course.distance_to_stop(view, view.place()) < limits.law().minimum_gap + 1)
       memory.change = {};  // the vehicle must leave this lane, too, and has no room left to reach its middle first
     bool const leader_stands = leader && leader->speed < detail::at_rest_below;
     // On its way back behind one that stands, it has no room for that, either, and may decide anew.
@@ -302,7 +302,7 @@ struct ChangeLanes {
   /// Adds the end of a lane that it must leave, so that it stops where the changes still fit.
   template <class View, class Limits>
   void heed_lane_end(View const& view, Limits& limits) const {
-    add_stop(limits, distance_to_stop(view, view.place()));
+    add_stop(limits, course.distance_to_stop(view, view.place()));
   }
 
  private:
@@ -392,18 +392,6 @@ struct ChangeLanes {
     return lane.width_at(s) > view.shape().width();
   }
 
-  /// Distance [m] that the vehicle's front may still drive from `at` in a lane that it must leave; infinite if it may
-  /// stay. It leaves room for the shortest change for each lane to cross. A vehicle that goes to the left stops
-  /// earlier, so that two vehicles that need each other's lanes do not stop side by side.
-  template <class View, class Place>
-  [[nodiscard]] double distance_to_stop(View const& view, Place const& at) const {
-    double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
-    if (until_end == infinite) return infinite;
-    auto const lanes = lanes_to_cross(view, at.corridor, at.piece, at.s);
-    double const changes = lanes.left > 0 ? lanes.left + 0.5 : std::max(1, lanes.right);
-    return until_end - view.shape().front - changes * course.least_length(view.shape());
-  }
-
   /// Longest permissible length of a change [m]: it must end before the lane does, stay on the road, lead around a
   /// standing object, and leave room for the next change.
   template <class View>
@@ -411,8 +399,9 @@ struct ChangeLanes {
                                                        CorridorId target) const {
     auto const& at = view.place();
     auto const there = view.place(target);
-    double const until_end = std::min({dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, there),
-                                       until_together(view, there), until_it_swings(view, there)});
+    double const until_end =
+        std::min({dead_end(view, at.corridor, at.piece) - at.s, course.distance_to_stop(view, there),
+                  until_together(view, there), until_it_swings(view, there)});
     double const beside_object = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
@@ -543,7 +532,7 @@ struct ChangeLanes {
     auto const there = view.place(change.target);
     add_leader(view, limits, view.ahead(there, detail::look_beside(limits.merging)), there, true);
     // The vehicle may enter the neighbouring lane even if that ends soon.
-    add_stop(limits, std::max(distance_to_stop(view, there), 0.6 * left + limits.law().minimum_gap + 1.0));
+    add_stop(limits, std::max(course.distance_to_stop(view, there), 0.6 * left + limits.law().minimum_gap + 1.0));
     return limits;
   }
 };

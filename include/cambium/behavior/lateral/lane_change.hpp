@@ -7,6 +7,7 @@
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
@@ -154,6 +155,19 @@ struct LaneChangeCourse {
   /// Shortest length of a change [m], however slow a vehicle of this shape drives.
   [[nodiscard]] double least_length(geometry::Shape const& shape) const {
     return detail::least_course_length(minimum_length, shape, detail::longer_by_front);
+  }
+
+  /// Distance [m] that the vehicle's front may still drive from `at` in a lane that it must leave; infinite if it may
+  /// stay. It leaves room for the shortest change for each lane to cross. A vehicle that goes to the left stops
+  /// earlier, so that two vehicles that need each other's lanes do not stop side by side.
+  template <class View, class Place>
+  [[nodiscard]] double distance_to_stop(View const& view, Place const& at) const {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+    double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
+    if (until_end == infinite) return infinite;
+    auto const lanes = lanes_to_cross(view, at.corridor, at.piece, at.s);
+    double const changes = lanes.left > 0 ? lanes.left + 0.5 : std::max(1, lanes.right);
+    return until_end - view.shape().front - changes * least_length(view.shape());
   }
 
   /// `motion` over `dt` [s], but with moderate braking wherever that keeps room for the shortest change behind `next`,

@@ -76,7 +76,11 @@ struct SemanticActions<DriverActions<Driver>> {
   using Others = Driver;
   static constexpr bool drives = true;
 
-  static DriverActions<Driver> usual() { return {.macro = semantic_actions<typename DriverActions<Driver>::Macro>()}; }
+  static DriverActions<Driver> usual() {
+    DriverActions<Driver> all;
+    all.macro.actions = semantic_actions<typename DriverActions<Driver>::Macro>().actions;
+    return all;
+  }
   static DriverActions<Driver> intended(Driver const& others) {
     using Macro = typename DriverActions<Driver>::Macro;
     if constexpr (requires { intended_actions<Macro>(others.law); })
