@@ -273,6 +273,35 @@ TEST_CASE("behind a standing vehicle, keeping the gap leaves room for a change w
   }
 }
 
+TEST_CASE("in a lane that it must leave it stops where the changes still fit, if told so, and can still change") {
+  auto const map = support::own_map("highway_exit.xodr");
+  auto const lane = map->find_lane("1", 100.0, -2), ramp = map->find_lane("2", 20.0, -1);
+  auto const where = [&](bool stops, bool changes) {
+    World world(map);
+    auto const pose = map->lane(lane).path.pose(100.0);
+    auto const id = world.add({.position = pose.position(),
+                               .heading = pose.heading,
+                               .speed = 20,
+                               .behavior = cb::MacroActions{.stops_before_end = stops},
+                               .goal = cb::ReachLane{.lane = ramp}});
+    for (auto const kind : {Kind::keep_gap, Kind::stay}) {
+      world.memory<cb::MacroActions>(id).choose(number_of(kind));
+      for (int i = 0; i < 100; ++i) REQUIRE(world.step(0.2));
+    }
+    for (int i = 0; changes && i < 100; ++i) {
+      world.memory<cb::MacroActions>(id).choose(number_of(i < 50 ? Kind::change_right : Kind::keep_gap));
+      REQUIRE(world.step(0.2));
+    }
+    return world.record(id);
+  };
+  auto const stopped = where(true, false);
+  CHECK(stopped.state.speed < 0.1);
+  CHECK(stopped.lane.s < 570.0);  // the exit begins at about 600 m
+  CHECK(stopped.lane.s > 500.0);
+  CHECK(where(false, false).lane.s > 600.0);
+  CHECK(where(true, true).lane.corridor != stopped.lane.corridor);
+}
+
 TEST_CASE("random actions repeat, differ between seeds, and all occur") {
   auto const run = [](std::uint64_t seed) {
     World world(straight_road(3, 2000.0), {.seed = seed});
