@@ -57,6 +57,10 @@ have_package() {
     libboost-mpi-dev) have_header boost/mpi.hpp ;;
     openmpi-bin) have mpirun ;;
     libclang-rt-19-dev) compgen -G '/usr/lib/llvm-19/lib/clang/*/lib/*/libclang_rt.fuzzer*' >/dev/null ;;
+    libc++-19-dev) compgen -G '/usr/lib/llvm-19/include/c++/v1/version' >/dev/null ;;
+    libc++abi-19-dev) compgen -G '/usr/lib/llvm-19/lib/libc++abi.*' >/dev/null ;;
+    g++-mingw-w64-x86-64-posix) have x86_64-w64-mingw32-g++-posix ;;
+    wine64) have wine64 || [[ -x /usr/lib/wine/wine64 ]] ;;
     python3-venv) python3 -c 'import ensurepip' 2>/dev/null ;;
     doctest-dev) have_header doctest/doctest.h ;;
     libbenchmark-dev) have_header benchmark/benchmark.h ;;

@@ -1,6 +1,13 @@
 #include "cambium/core/text.hpp"
 
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
 #include <clocale>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <string>
@@ -8,6 +15,8 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+
+#include "cambium/core/random.hpp"
 
 using namespace cambium::detail;
 
@@ -38,6 +47,35 @@ TEST_CASE("a number is a number as a whole, in decimal digits, in every locale")
   }
   std::setlocale(LC_NUMERIC, kept.c_str());
 }
+
+#ifdef __cpp_lib_to_chars
+TEST_CASE_TEMPLATE("strtod reads a number as std::from_chars does, in every locale", Number, double, float) {
+  std::string const kept = std::setlocale(LC_NUMERIC, nullptr);
+  std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // where there is one
+  std::vector<std::string> texts{"",      "-",       ".",       "+1",     " 1",    "0x10",  "-0",   "1e",
+                                 "1e+5x", ".5.",     "1,5",     "1e999",  "inf",   "-inf",  "nan",  "-nan",
+                                 "in",    "1e-9999", "-1e-999", "5e-324", "1e-45", "1e-40", "2,5.1"};
+  cambium::RandomStream bits(7, 0, 0);
+  for (int i = 0; i < 2000; ++i) {
+    auto const number = std::bit_cast<double>(bits());
+    std::array<char, 40> text{};
+    std::snprintf(text.data(), text.size(), i % 2 == 0 ? "%.17g" : "%.3f",
+                  i % 2 == 0 ? number : std::remainder(number, 1e6));
+    texts.emplace_back(text.data());
+    std::replace(texts.back().begin(), texts.back().end(), ',', '.');
+  }
+  for (auto const& text : texts) {
+    CAPTURE(text);
+    Number a{}, b{};
+    auto const wanted = std::from_chars(text.data(), text.data() + text.size(), a);
+    auto const found = cambium::detail::from_chars_by_strtod(text.data(), text.data() + text.size(), b);
+    CHECK(found.ptr == wanted.ptr);
+    CHECK(found.ec == wanted.ec);
+    CHECK(std::memcmp(&a, &b, sizeof a) == 0);
+  }
+  std::setlocale(LC_NUMERIC, kept.c_str());
+}
+#endif
 
 TEST_CASE("a number ends where its text ends") {
   std::string_view const digits = "12345 ";

@@ -32,6 +32,14 @@ function(add_readme_program name expected source)
   endif()
   add_program_test(${name} ${target} ${CMAKE_COMMAND} "-DPROGRAM=$<TARGET_FILE:${target}>" "-DEXPECTED=${expected}"
     -P ${structure_source}/run_readme_program.cmake)
+  # Those of the front page with libc++, and those that need only Eigen and Boost by MinGW's g++ under Wine.
+  set(run bash ${structure_source}/run_elsewhere.sh ${structure_binary}/${target}.cpp "${expected}")
+  if(libcxx_command AND name MATCHES "^readme[.][0-9]+$")
+    add_timed_test(${name}.libc++ ${run} "" ${libcxx_command} -lpugixml)
+  endif()
+  if(mingw_command AND CAMBIUM_CHECK_wine AND NOT source MATCHES "opendrive|lanelet|json|benchmark|snapshot|scenario")
+    add_timed_test(${name}.mingw ${run} ${CAMBIUM_CHECK_wine} ${mingw_command} -static)
+  endif()
 endfunction()
 
 # add_readme_programs(README): those of one file.

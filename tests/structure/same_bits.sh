@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # same_bits.sh SOURCE INCLUDE EIGEN FOLDER COMPILER...: passes when the program SOURCE prints the same from each compiler, for this
-# processor, without its fused operations, and with another C and C++ library (musl and libc++ of ziglang, from PyPI). INCLUDE has
-# cambium's headers, EIGEN Eigen's. Says what it leaves out because it is missing here.
+# processor, without its fused operations, with another C and C++ library (musl and libc++ of ziglang, from PyPI), and as a program
+# of Windows, by MinGW's g++, under Wine. INCLUDE has cambium's headers, EIGEN Eigen's. Says what it leaves out because it is missing
+# here.
 set -euo pipefail
 source=$1 include=$2 eigen=$3 folder=$4
 shift 4
@@ -45,4 +46,17 @@ if [[ -d $boost ]] && { [[ -x python/bin/python ]] || python3 -m venv python; } 
   compare "clang with musl and libc++" ./program
 else
   echo "left out: musl and libc++, since ziglang or Boost is not to be had here"
+fi
+
+wine=$(command -v wine64 || command -v /usr/lib/wine/wine64 || true)
+if [[ -n $wine && -d $boost ]] && command -v x86_64-w64-mingw32-g++-posix >/dev/null; then
+  ln -sfn "$boost" boost_alone/boost
+  x86_64-w64-mingw32-g++-posix -O2 -static -Wa,-mbig-obj -isystem boost_alone "${options[@]}"
+  export WINEPREFIX=$PWD/wine WINEDEBUG=-all
+  # fma of MinGW before version 11 rounds twice, and with it random numbers.
+  random='^(idm_stochastic|pedestrian) '
+  grep -vE "$random" first.txt >calm.txt && mv calm.txt first.txt
+  compare "MinGW's g++ under Wine, but for random numbers" bash -c "'$wine' ./program.exe | tr -d '\r' | grep -vE '$random'"
+else
+  echo "left out: Windows, since MinGW's g++ (g++-mingw-w64-x86-64-posix) or Wine (wine64) is missing here"
 fi

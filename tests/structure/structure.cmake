@@ -174,6 +174,50 @@ foreach(name IN LISTS warning_compilers)
   endif()
 endforeach()
 
+# The same by the compilers of other systems: clang with libc++, as macOS has it, and MinGW's g++, as for Windows, which has
+# no POSIX. Boost before 1.80 needs what libc++ has removed.
+left_to_all("structure.warnings.libc++, .mingw" "all headers, once more")
+find_program(CAMBIUM_CHECK_mingw x86_64-w64-mingw32-g++-posix)
+find_program(CAMBIUM_CHECK_wine wine64 PATHS /usr/lib/wine)
+mark_as_advanced(CAMBIUM_CHECK_mingw CAMBIUM_CHECK_wine)
+set(libcxx_command "")
+set(mingw_command "")
+if(NOT CAMBIUM_QUICK_TESTS)
+  file(GLOB libcxx_folders /usr/lib/llvm-19/include/c++/v1)
+  if(CAMBIUM_CHECK_clang++-19 AND libcxx_folders)
+    set(libcxx_options -stdlib=libc++ -D_LIBCPP_ENABLE_CXX17_REMOVED_UNARY_BINARY_FUNCTION)
+    set(libcxx_command ${CAMBIUM_CHECK_clang++-19} @${compile_flags} ${libcxx_options})
+    add_syntax_check(stamp libc++ ${CAMBIUM_CHECK_clang++-19} ${structure_binary}/all_headers.cpp -fsyntax-only
+      ${libcxx_options})
+    add_custom_target(structure_warnings_libcxx DEPENDS ${stamp})
+    add_build_test(structure.warnings.libc++ structure_warnings_libcxx)
+  endif()
+  if(CAMBIUM_CHECK_mingw)
+    # Header-only libraries without the headers of this system's C library beside them.
+    set(alone_libraries ${structure_binary}/libraries)
+    file(MAKE_DIRECTORY ${alone_libraries})
+    foreach(library boost nlohmann CLI pugixml.hpp pugiconfig.hpp sqlite3.h)
+      if(EXISTS /usr/include/${library})
+        file(CREATE_LINK /usr/include/${library} ${alone_libraries}/${library} SYMBOLIC)
+      endif()
+    endforeach()
+    set(mingw_command ${CAMBIUM_CHECK_mingw} @${compile_flags} -isystem ${alone_libraries})
+    string(REGEX REPLACE "#include <cambium/benchmark/(detail/job_process|run_on_processes|run_on_ranks|benchmark_on_ranks).hpp>\n" ""
+      windows_headers "${all_headers}")
+    write_if_new(${structure_binary}/windows_headers.cpp "${windows_headers}")
+    add_syntax_check(stamp mingw ${CAMBIUM_CHECK_mingw} ${structure_binary}/windows_headers.cpp -fsyntax-only
+      -isystem ${alone_libraries})
+    add_custom_target(structure_warnings_mingw DEPENDS ${stamp})
+    add_build_test(structure.warnings.mingw structure_warnings_mingw)
+  endif()
+  foreach(name libc++ mingw)
+    if(NOT TEST structure.warnings.${name})
+      add_test(NAME structure.warnings.${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: no ${name} here")
+      set_tests_properties(structure.warnings.${name} PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
+    endif()
+  endforeach()
+endif()
+
 # Programs that must not compile, and the sentence that each must get, from one compiler of each kind; in the quick size
 # from the quickest. They begin with wrong.hpp, which is precompiled.
 left_to_all("structure.wrong.* by a second compiler" "here by clang++ where it is there, else by g++")

@@ -283,7 +283,7 @@ int benchmark_main(int argc, char const* const* argv, std::vector<Contender<Worl
   std::filesystem::path const path(argc > 0 ? argv[0] : "benchmark");
   try {
     if (defaults.command.empty())
-      defaults.command = shell_word(path.has_parent_path() ? std::filesystem::absolute(path) : path);
+      defaults.command = shell_word((path.has_parent_path() ? std::filesystem::absolute(path) : path).string());
     std::string words = defaults.command;
     for (int i = 1; i < argc; ++i) words += " " + shell_word(argv[i]);
     auto command = detail::parse_benchmark_command(argc, argv, defaults);

@@ -349,8 +349,8 @@ CAMBIUM_COLD std::string source_of(BenchmarkCommand const& command, std::filesys
                                    std::filesystem::path const& folder) {
   auto const below = file.lexically_relative(folder);
   bool const is_below = !below.empty() && *below.begin() != "..";
-  return "--set " + shell_word(is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file)) +
-         command.drawing;
+  auto const set = is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file);
+  return "--set " + shell_word(set.string()) + command.drawing;
 }
 
 extern "C" inline void say_how_to_go_on(int signal) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#if !__has_include(<poll.h>)
+#error \
+    "cambium/benchmark/run_on_processes.hpp needs a POSIX system, for fork(): here include run_on_threads.hpp instead"
+#endif
 #include <poll.h>
 
 #include <algorithm>

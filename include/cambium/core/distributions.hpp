@@ -14,8 +14,8 @@
 #include "cambium/core/portable_math.hpp"
 
 // The same stream gives the same bits on every platform with IEEE doubles (no -ffast-math). Two rules make this so:
-//   - The code uses only +, -, *, /, sqrt and fma, which are correctly rounded everywhere, and `log`, `pow` and
-//     `fused_exp` of portable_math.hpp, which keep these rules, too.
+//   - The code uses only +, -, *, /, sqrt and fma, which are correctly rounded everywhere (but fma of MinGW before
+//     version 11), and `log`, `pow` and `fused_exp` of portable_math.hpp, which keep these rules, too.
 //   - No product feeds an addition outside std::fma, so compilers find nothing to contract into fused operations.
 //
 // Draws never throw. To check parameters, call `check_parameters(distribution)` once, outside the step path; it throws

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
+#include <clocale>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -74,6 +77,46 @@ template <class Text>
   return number.find_first_not_of("-0") == number.find('.');
 }
 
+/// `std::from_chars` for floating point by way of `strtod`. In the C++ locale of `setlocale`, which no other thread may
+/// change meanwhile.
+template <class Number>
+[[nodiscard]] std::from_chars_result from_chars_by_strtod(char const* begin, char const* end, Number& value) {
+  std::string text(begin, end);
+  std::size_t const sign = text.starts_with('-') ? 1 : 0;
+  constexpr std::string_view firsts = ".0123456789iInN";  // strtod allows blanks and signs, too
+  if (text.size() == sign || firsts.find(text[sign]) == firsts.npos) return {begin, std::errc::invalid_argument};
+  text.resize(std::min(text.find_first_of("xX"), text.size()));  // no hexadecimal digits
+  std::string_view const point = std::localeconv()->decimal_point;
+  std::size_t dot = text.npos;
+  if (point != ".") {
+    text.resize(std::min(text.find(point), text.size()));
+    if (dot = text.find('.'); dot != text.npos) text.replace(dot, 1, point);
+  }
+  char* stop = nullptr;
+  errno = 0;
+  Number read{};
+  if constexpr (std::is_same_v<Number, float>)
+    read = std::strtof(text.c_str(), &stop);
+  else
+    read = std::strtod(text.c_str(), &stop);
+  auto length = static_cast<std::size_t>(stop - text.c_str());
+  if (length == 0) return {begin, std::errc::invalid_argument};
+  if (dot < length) length -= point.size() - 1;
+  if (errno == ERANGE && (std::isinf(read) || read == Number{}))
+    return {begin + length, std::errc::result_out_of_range};
+  value = read;
+  return {begin + length, std::errc{}};
+}
+
+/// `std::from_chars`, also where the library has only that of integers, as libc++ before 20.
+template <class Number>
+[[nodiscard]] std::from_chars_result from_chars(char const* begin, char const* end, Number& value) {
+  if constexpr (requires { std::from_chars(begin, end, value); })
+    return std::from_chars(begin, end, value);
+  else
+    return from_chars_by_strtod(begin, end, value);
+}
+
 /// Parses all of `text` as a finite decimal number, independent of the locale; nothing if it is not one. White space
 /// at the ends and a leading '+' are allowed. A number too small for a double becomes 0.
 template <class Number>
@@ -81,7 +124,7 @@ template <class Number>
   text = trimmed(text);
   if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
   Number value{};
-  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  auto const [end, error] = detail::from_chars(text.data(), text.data() + text.size(), value);
   if (end != text.data() + text.size()) return std::nullopt;
   if constexpr (std::is_floating_point_v<Number>) {
     if (error == std::errc::result_out_of_range && is_underflow(text)) return Number{};

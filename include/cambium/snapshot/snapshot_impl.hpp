@@ -100,7 +100,7 @@ template <class Number>
   bool const is_nan = text.starts_with("nan:");
   auto const* const begin = text.data() + (is_nan ? 4 : 0);
   auto const* const end = text.data() + text.size();
-  auto const read = is_nan ? std::from_chars(begin, end, bits) : std::from_chars(begin, end, value);
+  auto const read = is_nan ? std::from_chars(begin, end, bits) : detail::from_chars(begin, end, value);
   if (read.ec != std::errc{} || read.ptr != end)
     throw SnapshotError(where, "'" + text.substr(0, 40) + "' is no number", "it is damaged: take another copy");
   return is_nan ? std::bit_cast<Number>(bits) : value;
