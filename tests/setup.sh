@@ -201,7 +201,8 @@ configure() {
   fi
   if [[ $part == TESTS ]]; then
     if ! have ccache; then options+=("-DCMAKE_CXX_COMPILER_LAUNCHER=$root/tests/timed"); fi
-    options+=(-DCAMBIUM_BUILD_EXAMPLES=ON "-DCAMBIUM_QUICK_TESTS=${quick:-OFF}" "-DCMAKE_CXX_LINKER_LAUNCHER=$root/tests/timed")
+    options+=(-DCAMBIUM_BUILD_EXAMPLES=ON "-DCAMBIUM_QUICK_TESTS=${quick:-OFF}"
+      "-DCAMBIUM_INSTALL_COMPILED=$([[ ${quick:-OFF} == ON ]] && echo OFF || echo ON)" "-DCMAKE_CXX_LINKER_LAUNCHER=$root/tests/timed")
   fi
   rm -f "$build/.configured_$part"
   note "configuring"

@@ -277,6 +277,9 @@ set_tests_properties(structure.wrong.harness_other_sentence PROPERTIES PASS_REGU
 add_wrong_program(harness_no_sentence ${structure_source}/harness/no_sentence.cpp)
 set_tests_properties(structure.wrong.harness_no_sentence PROPERTIES PASS_REGULAR_EXPRESSION "first line must be")
 
+add_timed_test(structure.wrong.older_standard bash ${structure_source}/wrong.sh ${structure_source}/harness/older_standard.cpp
+  "${CMAKE_CXX_COMPILER}|-std=c++17|-I${PROJECT_SOURCE_DIR}/include|-fsyntax-only")
+
 # Traffic drives with the same bits, whatever the compiler, the processor and the standard library.
 left_to_all("structure.same_bits" "compiles the steps of seven drivers five times, 8 minutes of one core")
 if(NOT CAMBIUM_QUICK_TESTS AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
@@ -324,6 +327,23 @@ add_consumer(subdirectory_links_opendrive_without_pugixml ${no_pugixml} -DCONSUM
 set(needs_pugixml "which[ \n]+cambium::opendrive[ \n]+needs[ \n]+and[ \n]+CMake[ \n]+did[ \n]+not[ \n]+find:[ \n]+install")
 set_tests_properties(structure.consumer.subdirectory_links_opendrive_without_pugixml PROPERTIES
   PASS_REGULAR_EXPRESSION "${needs_pugixml}")
+# match_words(VARIABLE WORD...): matches the sentence of these words, wherever CMake breaks its lines.
+function(match_words variable)
+  list(JOIN ARGN "[ \n]+" sentence)
+  set(${variable} "${sentence}" PARENT_SCOPE)
+endfunction()
+foreach(case "json|nlohmann_json|nlohmann_json .nlohmann-json3-dev." "benchmark|SQLite3|SQLite .libsqlite3-dev."
+    "benchmark_main|CLI11|CLI11 .libcli11-dev." "snapshot|boost_serialization|Boost.Serialization .libboost-serialization-dev.")
+  string(REGEX REPLACE "[|].*" "" part "${case}")
+  string(REGEX REPLACE "^[^|]*[|]([^|]*)[|].*" "\\1" package "${case}")
+  string(REGEX REPLACE ".*[|]" "" words "${case}")
+  add_consumer(subdirectory_links_${part}_without_${package} -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON
+    -DCONSUMER_SUBDIRECTORY=${PROJECT_SOURCE_DIR} -DCONSUMER_TARGETS=${part})
+  string(REPLACE " " ";" words "${words}")
+  match_words(sentence cambium::${part} needs ${words}, which CMake did not find)
+  set_tests_properties(structure.consumer.subdirectory_links_${part}_without_${package} PROPERTIES
+    PASS_REGULAR_EXPRESSION "${sentence}")
+endforeach()
 if(CAMBIUM_INSTALL)
   set(install_tree ${structure_binary}/install)
   add_test(NAME structure.install
@@ -338,14 +358,34 @@ if(CAMBIUM_INSTALL)
     set(compiled "")
   endif()
   add_consumer(package ${package} "-DCONSUMER_COMPONENTS=opendrive${compiled}" "-DCONSUMER_TARGETS=geometry${compiled}")
-  add_consumer(package_without_pugixml ${package} ${no_pugixml} "-DCONSUMER_TARGETS=cambium${compiled}")
+  add_timed_test(structure.debian_package bash ${structure_source}/debian_package.sh ${PROJECT_BINARY_DIR}
+    ${structure_binary}/debian_package ${structure_source}/consumer ${CMAKE_CXX_COMPILER})
+  set_tests_properties(structure.debian_package PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
+  set(package_of_sources ${package})
+  left_to_all("structure.exporting.*" "a user's installed libraries that link cambium::compiled, which is not installed here")
+  if(CAMBIUM_INSTALL_COMPILED)
+    foreach(type STATIC SHARED)
+      add_timed_test(structure.exporting.${type} bash ${structure_source}/exporting.sh ${structure_source}/exporting
+        ${structure_binary}/exporting_${type} ${type} ${install_tree} ${CMAKE_CXX_COMPILER})
+      set_tests_properties(structure.exporting.${type} PROPERTIES FIXTURES_REQUIRED cambium_install)
+    endforeach()
+    # The same without the compiled libraries, which are then made in the user's build.
+    set(package_of_sources -DCMAKE_PREFIX_PATH=${install_tree}_of_sources)
+    add_test(NAME structure.install_of_sources COMMAND bash -c
+      "rm -rf '${install_tree}_of_sources' && cp -r '${install_tree}' '${install_tree}_of_sources' && rm -r '${install_tree}_of_sources/${CMAKE_INSTALL_LIBDIR}'")
+    set_tests_properties(structure.install_of_sources PROPERTIES FIXTURES_SETUP cambium_install DEPENDS structure.install)
+  endif()
+  add_consumer(package_without_pugixml ${package_of_sources} ${no_pugixml} "-DCONSUMER_TARGETS=cambium${compiled}")
   add_consumer(package_lacks_opendrive ${package} ${no_pugixml} -DCONSUMER_COMPONENTS=opendrive)
   add_consumer(package_links_opendrive_without_pugixml ${package} ${no_pugixml} -DCONSUMER_TARGETS=opendrive)
   add_timed_test(structure.installed_files bash ${structure_source}/installed.sh ${PROJECT_SOURCE_DIR} ${install_tree}
     ${CMAKE_CXX_COMPILER} ${check_clang})
   set_tests_properties(structure.installed_files PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
+  add_consumer(package_lacks_benchmark ${package} -DCMAKE_DISABLE_FIND_PACKAGE_SQLite3=ON -DCONSUMER_COMPONENTS=benchmark)
+  match_words(sentence cambium's component benchmark needs SQLite .libsqlite3-dev., which CMake did not find)
+  set_tests_properties(structure.consumer.package_lacks_benchmark PROPERTIES PASS_REGULAR_EXPRESSION "${sentence}")
   set_tests_properties(structure.consumer.package structure.consumer.package_without_pugixml
-    structure.consumer.package_lacks_opendrive structure.consumer.package_links_opendrive_without_pugixml
+    structure.consumer.package_lacks_benchmark structure.consumer.package_lacks_opendrive structure.consumer.package_links_opendrive_without_pugixml
     structure.installed_files PROPERTIES FIXTURES_REQUIRED cambium_install)
   set_tests_properties(structure.consumer.package_lacks_opendrive PROPERTIES
     PASS_REGULAR_EXPRESSION "component[ \n]+opendrive[ \n]+needs[ \n]+pugixml,[ \n]+which[ \n]+CMake[ \n]+did[ \n]+not[ \n]+find")

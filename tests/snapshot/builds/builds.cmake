@@ -29,7 +29,7 @@ function(add_thaw_test name)
     FIXTURES_REQUIRED "snapshot_recorded;snapshot_build_${name}")
 endfunction()
 
-if(TARGET cambium::snapshot AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT WIN32)
+if(TARGET cambium_snapshot AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang" AND NOT WIN32)
   add_snapshot_build(release ${CMAKE_CXX_COMPILER} -O2 -DNDEBUG)
   add_timed_test(snapshot.builds.record ${builds_binary}/release record ${builds_binary}/recorded)
   set_tests_properties(snapshot.builds.record PROPERTIES
