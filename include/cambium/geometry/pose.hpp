@@ -16,6 +16,8 @@ concept ForeignVector = requires(V const& v) {
   { v.x() + v.y() } -> std::same_as<double>;
 };
 
+struct Pose;
+
 /// A point, or the vector between two points, in the map frame [m]. Converts from and to `Eigen::Vector2d` (and similar
 /// types) and uses the same member names, so that most headers need not include Eigen.
 class Point {
@@ -25,6 +27,13 @@ class Point {
   constexpr Point(double x, double y) : x_(x), y_(y) {}
   template <ForeignVector V>
   constexpr Point(V const& v) : x_(v.x()), y_(v.y()) {}
+  /// Catches a pose, whose heading would be lost.
+  template <std::same_as<Pose> P>
+  constexpr Point(P const&) {
+    static_assert(!std::same_as<P, Pose>,
+                  "cambium::geometry::Point: a pose is no point; write pose.position(), and give its heading where one "
+                  "is asked for");
+  }
   template <ForeignVector V>
   constexpr operator V() const {
     return V(x_, y_);

@@ -274,4 +274,24 @@ class Map {
 namespace cambium {
 using map::Map;
 using map::MapOptions;
+
+namespace detail {
+struct NotIncluded {
+  std::shared_ptr<Map const> map;
+  int diagnostics;
+};
+}  // namespace detail
+
+/// Catch forgotten includes: any other function of the name is a better match.
+template <class None = void>
+detail::NotIncluded load_opendrive(...) {
+  static_assert(!std::is_void_v<None>, "cambium::load_opendrive: include <cambium/map/opendrive.hpp> (needs pugixml)");
+  return {};
+}
+template <class None = void>
+detail::NotIncluded load_lanelet2(...) {
+  static_assert(!std::is_void_v<None>,
+                "cambium::load_lanelet2: include <cambium/map/lanelet/lanelet2.hpp> (needs pugixml)");
+  return {};
+}
 }  // namespace cambium

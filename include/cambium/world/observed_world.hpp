@@ -84,6 +84,13 @@ class ObservedWorld {
   [[nodiscard]] std::optional<RoadUser> ahead(Look const& look = {}) const { return next<1>(look); }
   [[nodiscard]] std::optional<RoadUser> behind(Look const& look = {}) const { return next<-1>(look); }
 
+  /// Catches the name that others have for it.
+  template <class None = void>
+  std::optional<RoadUser> leader() const {
+    static_assert(!std::is_void_v<None>, "cambium::ObservedWorld::leader: say ahead(), the next road user ahead");
+    return std::nullopt;
+  }
+
   /// Calls `f(RoadUser)` for the next road user ahead in the agent's own lane corridor, and for the next one in each
   /// lane that merges into it or has just split off: `ahead` is the one with the smallest gap, but not always the one
   /// that demands the most caution. O(1) if there are no such lanes, else O(feeders), plus a search in each.

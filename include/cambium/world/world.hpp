@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -88,6 +89,14 @@ class World {
     roster->seed = options.seed;
     roster_ = std::move(roster);
     frame_.time = options.time;
+  }
+
+  /// Catches `World(*map)`.
+  template <std::same_as<Map> M>
+  explicit World(M const&, WorldOptions const& = {}) {
+    static_assert(!std::same_as<M, Map>,
+                  "cambium::World: a world shares its map with others; pass the std::shared_ptr<Map const> that "
+                  "load_opendrive returned, not *map");
   }
 
   /// Builds a world from its parts, as predictions, searches and snapshots do. Throws `WorldError` if the map or the
@@ -242,6 +251,13 @@ class World {
   [[nodiscard]] Record const& record(AgentId id) const { return frame_.agents[slot_of(id)]; }
   [[nodiscard]] State const& state(AgentId id) const { return record(id).state; }
   [[nodiscard]] AgentStatus status(AgentId id) const { return record(id).status; }
+  /// Catches a number.
+  template <std::integral Number>
+  State const& state(Number) const {
+    static_assert(!std::integral<Number>,
+                  "cambium::World::state: a number is no agent; keep the AgentId that World::add returned, or take "
+                  "frame().agents[cambium::Slot{i}].state by place");
+  }
 
   /// The agent's situation, as goals see it. Throws as `slot_of`.
   [[nodiscard]] GoalSituation situation(AgentId id) const {

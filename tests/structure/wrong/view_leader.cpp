@@ -1,0 +1,2 @@
+// expect: cambium::ObservedWorld::leader: say ahead()
+double gap(Sim& world, cambium::AgentId id) { return world.observe(id).leader()->gap; }
