@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "../support/text.hpp"
+#include "cambium/core/version.hpp"
 
 namespace {
 
@@ -188,6 +190,24 @@ TEST_CASE("rooms include only upward, and the rooms of a step stay free of heavy
   auto const includes = read_includes(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "include");
   CHECK(includes.contains("cambium/core/ids.hpp"));
   for (auto const& breach : find_breaches(includes)) FAIL_CHECK(breach);
+}
+
+TEST_CASE("all that headers declare is in the inline namespace of their version") {
+  std::string const version =
+      "inline v" + std::to_string(CAMBIUM_VERSION_MAJOR) + "_" + std::to_string(CAMBIUM_VERSION_MINOR);
+  int read = 0;
+  for (auto const& entry :
+       std::filesystem::recursive_directory_iterator(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "include")) {
+    if (entry.path().extension() != ".hpp") continue;
+    CAPTURE(entry.path().string());
+    std::istringstream lines(support::content_of(entry.path()));
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.starts_with("namespace cambium")) continue;
+      CHECK(line.starts_with("namespace cambium::" + version));
+      ++read;
+    }
+  }
+  CHECK(read > 400);
 }
 
 TEST_CASE("a step dispatches its calls for each agent without std::visit, its table of functions and its exception") {

@@ -297,6 +297,15 @@ if(NOT CAMBIUM_QUICK_TESTS AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
   set_tests_properties(structure.same_bits PROPERTIES TIMEOUT 2400)
 endif()
 
+# Two versions in one program.
+left_to_all("structure.two_versions" "compiles a program by two versions of the headers")
+if(NOT CAMBIUM_QUICK_TESTS AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
+  get_target_property(eigen_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+  list(GET eigen_dir 0 eigen_dir)
+  add_timed_test(structure.two_versions bash ${structure_source}/two_versions.sh ${structure_source}/exporting/steps.cpp
+    ${PROJECT_SOURCE_DIR}/include ${structure_binary}/two_versions ${CMAKE_CXX_COMPILER} -std=c++20 -isystem ${eigen_dir})
+endif()
+
 # A project that uses cambium, by add_subdirectory and by find_package.
 function(add_consumer name)
   add_timed_test(structure.consumer.${name} ${CMAKE_CTEST_COMMAND} --build-and-test ${structure_source}/consumer ${structure_binary}/consumer_${name}

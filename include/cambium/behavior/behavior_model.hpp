@@ -5,7 +5,7 @@
 
 #include "cambium/behavior/view.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The workspace of a behaviour that needs none.
 struct NoWorkspace {};
@@ -208,4 +208,4 @@ void was_set(Memory& memory) {
   if constexpr (requires { memory.was_set(); }) memory.was_set();
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/one_of.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 /// Plans in a function of its own, with the workspace if there is one. A step that inlined every behaviour of a large
@@ -110,4 +110,4 @@ inline constexpr bool is_behavior_set = false;
 template <class... Behaviors>
 inline constexpr bool is_behavior_set<BehaviorSet<Behaviors...>> = true;
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -17,7 +17,7 @@
 #include "cambium/behavior/lateral/mobil_rule.hpp"
 #include "cambium/behavior/lateral/track_line.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Drivers composed of the parts in law/, lateral/ and heed/. `UrbanDriver` and `AdaptiveCruiseControl` drive like
 /// people by default, those that follow by IDM with BARK's parameters. Further heeds are added by `Also`, as in
@@ -60,4 +60,4 @@ using BasicUrbanDriver = Driver<Law, ChangeLanes<MobilRule<>>, SpeedLimit, Bends
 using UrbanDriver = BasicUrbanDriver<>;
 static_assert(BehaviorModel<UrbanDriver>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How the drivers of one kind of vehicle differ from each other: each parameter with its distribution. The defaults
 /// are car drivers on motorways. "Fitted" are parameters that nobody observes as such: they were chosen so that traffic
@@ -152,4 +152,4 @@ namespace presets {
 
 }  // namespace presets
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 /// Drivers from the literature as parameters of the car-following models, and vehicle models of cyclists and
 /// pedestrians. For vehicle shapes see geometry/shape.hpp. The numbers of the papers are quoted second-hand and not
 /// compared with the papers' tables. The papers do not bound accelerations; the bounds are ours.
-namespace cambium::presets {
+namespace cambium::inline v0_1::presets {
 
 /// Treiber, Hennecke, Helbing 2000, "Congested traffic states in empirical observations and microscopic simulations",
 /// table I: 120 km/h, 1.6 s, 0.73 m/s^2, 1.67 m/s^2, 2 m. String unstable in dense traffic, as the paper intends.
@@ -308,4 +308,4 @@ inline constexpr Preset all[] = {
     {"timid", "own numbers, likewise", timid()},
     {"cyclist", "own numbers, near SUMO's default speed of bicycles", cyclist()}};
 
-}  // namespace cambium::presets
+}  // namespace cambium::inline v0_1::presets

@@ -12,7 +12,7 @@
 #include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace geometry {
 class Polygon;
@@ -135,4 +135,4 @@ struct ViewArchetype {
   ///@}
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -30,7 +30,7 @@
 #include "cambium/scenario/scenario_file.hpp"
 
 /// The command line of a benchmark program. It is parsed by CLI11: link cambium::benchmark_main.
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Where `benchmark_main` looks for what the command line does not name.
 struct BenchmarkDefaults {
@@ -309,7 +309,7 @@ int benchmark_main(int argc, char const* const* argv, std::vector<Contender<Worl
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/benchmark/benchmark_main_impl.hpp"

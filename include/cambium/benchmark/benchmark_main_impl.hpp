@@ -50,7 +50,7 @@
 #define CAMBIUM_HAS_PROCESSES 0
 #endif
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -427,4 +427,4 @@ CAMBIUM_COLD std::string lines_of(RunResult const& result) {
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/benchmark/run_on_ranks.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// `benchmark_main` on all ranks of an MPI program:
 ///
@@ -31,4 +31,4 @@ int benchmark_on_ranks(Communicator const& ranks, int argc, char const* const* a
   return detail::end_program(ranks, benchmark_main(argc, argv, contenders, defaults), is_lost);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

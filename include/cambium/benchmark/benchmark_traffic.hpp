@@ -13,7 +13,7 @@
 #include "cambium/observer/perfect.hpp"
 #include "cambium/world/world.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The world that the scenario sets of the repository need (`examples/benchmark/sets`): the drivers that their files
 /// name, and how these see.
@@ -22,4 +22,4 @@ using BenchmarkTraffic =
                       HumanDriver<UrbanDriver>>,
           InterpolateExecution, SingleTrack, ObserverSet<PerfectObserver, OccludedObserver, ParametricObserver>>;
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -9,7 +9,7 @@
 #include "cambium/benchmark/result_group.hpp"
 #include "cambium/benchmark/statistics.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Which way a significant difference goes.
 enum class Finding { none, better, worse };
@@ -73,7 +73,7 @@ struct Comparisons {
 /// Compares each two behaviours of a set by success and closed-loop score. As above otherwise; may be empty.
 [[nodiscard]] Comparisons compare_each(std::vector<ResultGroup> const& groups, double level = 0.05);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/benchmark/comparison_impl.hpp"

@@ -17,7 +17,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/text.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -247,4 +247,4 @@ CAMBIUM_COLD Comparisons compare_each(std::vector<ResultGroup> const& groups, do
   });
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

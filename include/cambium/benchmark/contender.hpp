@@ -31,7 +31,7 @@
 #include "cambium/viewer/record_world.hpp"
 #include "cambium/world/world.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How a scenario is run.
 struct RunOptions {
@@ -396,4 +396,4 @@ template <class ScenarioWorld, class Behavior, class Keep = KeepNothing>
       std::move(keep));
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 #include "cambium/benchmark/run_on_threads.hpp"
 #include "cambium/benchmark/run_result.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The outcome of a benchmark's job: a contender's run of a scenario.
 struct JobOutcome {
@@ -63,4 +63,4 @@ struct Executor {
           .name = std::to_string(threads) + (threads == 1 ? " thread" : " threads")};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

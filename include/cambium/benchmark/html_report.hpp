@@ -6,7 +6,7 @@
 
 #include "cambium/benchmark/report.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Title of an HTML report, and where it finds replays.
 struct HtmlReportOptions {
@@ -31,7 +31,7 @@ struct HtmlReportOptions {
 /// give the same bytes. All names are escaped. O(rows).
 [[nodiscard]] std::string html_report(Report const& report, HtmlReportOptions const& options = {});
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/benchmark/html_report_impl.hpp"

@@ -24,7 +24,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/markup.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -263,4 +263,4 @@ CAMBIUM_COLD std::string html_report(Report const& report, HtmlReportOptions con
   return page;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

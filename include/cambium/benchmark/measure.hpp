@@ -8,7 +8,7 @@
 
 #include "cambium/benchmark/result_group.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A quantity of each run that reports show: a share of scenarios (of a bool or an error), or a mean (of a number).
 struct Measure {
@@ -29,7 +29,7 @@ struct Measure {
 /// The place of a measure in `measures()`. Precondition: there is one of that key.
 [[nodiscard]] std::size_t measure_index(std::string_view key);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/benchmark/measure_impl.hpp"

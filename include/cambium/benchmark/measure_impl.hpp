@@ -12,7 +12,7 @@
 #include "cambium/benchmark/measure.hpp"
 #include "cambium/core/macros.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -72,4 +72,4 @@ CAMBIUM_COLD std::size_t measure_index(std::string_view key) {
   return static_cast<std::size_t>(std::ranges::find(measures(), key, &Measure::key) - measures().begin());
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

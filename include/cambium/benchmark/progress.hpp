@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <string>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Progress after `seconds` of work: "120 of 600, 14.2/s, 34 s left".
 [[nodiscard]] inline std::string progress_text(std::size_t done, std::size_t total, double seconds) {
@@ -77,4 +77,4 @@ class ProgressBar {
   bool is_terminal_ = false, is_drawn_ = false;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

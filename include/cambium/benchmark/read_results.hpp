@@ -8,7 +8,7 @@
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/core/text.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// All results of a database in groups: by set, behaviour, parameters and version. Throws `StoreError` if it cannot be
 /// read. O(rows + groups²).
@@ -55,4 +55,4 @@ namespace cambium {
   return groups;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

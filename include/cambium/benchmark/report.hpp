@@ -11,7 +11,7 @@
 #include "cambium/benchmark/statistics.hpp"
 #include "cambium/benchmark/table.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A measure of one group: a share with its Wilson interval, or a mean with its bootstrap interval (both 95 %).
 struct Estimate {
@@ -54,7 +54,7 @@ struct Report {
 /// `against` names the other behaviour, and `value` is the difference from it. Shares are numbers from 0 to 1.
 [[nodiscard]] std::string csv_of(Report const& report);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/benchmark/report_impl.hpp"

@@ -19,7 +19,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/text.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -451,4 +451,4 @@ CAMBIUM_COLD std::string csv_of(Report const& report) {
   return text;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

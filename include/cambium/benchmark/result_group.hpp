@@ -6,7 +6,7 @@
 
 #include "cambium/benchmark/run_result.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The results of one behaviour, with one set of parameters and one version of cambium, on one set of scenarios.
 struct ResultGroup {
@@ -32,4 +32,4 @@ struct ResultGroup {
   std::vector<Row> rows{};  ///< by scenario
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

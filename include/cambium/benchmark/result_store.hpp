@@ -26,7 +26,7 @@ struct sqlite3_stmt;
 ///
 /// Hashes are texts of 16 hexadecimal digits. Everything in `results` but `run` is the same however often, in whatever
 /// order and on how many threads the scenarios are run.
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Identifies a result.
 struct ResultKey {
@@ -146,7 +146,7 @@ class ResultStore {
   bool in_transaction_ = false;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/benchmark/result_store_impl.hpp"

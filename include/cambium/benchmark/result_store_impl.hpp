@@ -19,7 +19,7 @@
 #include "cambium/core/text.hpp"
 #include "cambium/core/type_info.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Helpers around SQLite.
 namespace detail::sql {
@@ -376,4 +376,4 @@ CAMBIUM_COLD void ResultStore::step(sqlite3_stmt* statement) {
   sqlite3_reset(statement);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

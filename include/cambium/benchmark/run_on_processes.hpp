@@ -16,7 +16,7 @@
 #include "cambium/benchmark/detail/outcome_bytes.hpp"
 #include "cambium/benchmark/executor.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Runs jobs in forked processes of this machine, for behaviours that may crash or never return: such a run becomes
 /// that job's error, and nothing else is lost. For POSIX systems. Call it while no other thread of the program runs.
@@ -45,4 +45,4 @@ namespace cambium {
           .name = std::to_string(processes) + (processes == 1 ? " process" : " processes")};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -27,7 +27,7 @@
 /// forked process. For POSIX systems. This header includes nothing of MPI: `Communicator` is a boost::mpi::communicator
 /// (link cambium::mpi), or has its members rank, size, iprobe, recv and send
 /// (and abort, for `benchmark_on_ranks`).
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How long ranks wait for each other.
 struct RankOptions {
@@ -235,4 +235,4 @@ template <class Communicator>
           .name = std::to_string(ranks.size() - 1) + (ranks.size() == 2 ? " rank" : " ranks")};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

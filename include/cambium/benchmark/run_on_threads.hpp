@@ -8,7 +8,7 @@
 #include <system_error>
 #include <vector>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Calls `run(i)` for all i below `count` on several threads; each takes the next free i. If a call throws, no further
 /// call starts, and the exception is rethrown. Makes do with fewer threads if the system gives fewer.
@@ -31,4 +31,4 @@ inline void run_on_threads(std::size_t count, std::size_t threads, std::function
   for (auto& other : others) other.get();
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -13,7 +13,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/text.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What ended a run by an error: the run itself (also where there is no error), the limit of the time to plan, or the
 /// death of its process. The machine may be to blame for the last two, so such scenarios are run again.
@@ -229,4 +229,4 @@ struct RunTimes {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

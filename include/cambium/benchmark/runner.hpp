@@ -27,7 +27,7 @@
 #include "cambium/scenario/scenario_set.hpp"
 #include "cambium/viewer/html_replay.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Which runs leave a replay.
 enum class Replays {
@@ -255,4 +255,4 @@ void serve_benchmark(ScenarioSet<World> const& set, std::vector<Contender<World>
                            detail::job_limit(set, options));
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -14,7 +14,7 @@
 
 /// How sure a benchmark's figures are. The bootstrap draws from a stream with a fixed seed: the same values give the
 /// same result.
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A confidence interval.
 struct Interval {
@@ -173,4 +173,4 @@ inline constexpr double rounding = 1e-9;
   return adjusted;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A table of text. The first column names the rows.
 struct Table {
@@ -20,7 +20,7 @@ struct Table {
 /// A table for LaTeX with the package booktabs; special characters are escaped.
 [[nodiscard]] std::string latex_of(Table const& table);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/benchmark/table_impl.hpp"

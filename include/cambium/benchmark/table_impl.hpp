@@ -12,7 +12,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -129,4 +129,4 @@ CAMBIUM_COLD std::string latex_of(Table const& table) {
   return text + "  \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

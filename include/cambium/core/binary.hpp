@@ -18,7 +18,7 @@
 ///                   the reader has a similar struct already, bits for the fields that differ, and these
 ///     alternative:  a number; with a new one the name
 ///     list:         the length; each element by what differs from the one before
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -134,7 +134,7 @@ template <Described T>
   return object;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/core/binary_impl.hpp"

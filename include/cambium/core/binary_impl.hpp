@@ -19,7 +19,7 @@
 #include "cambium/core/text.hpp"
 #include "cambium/core/type_info.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 inline constexpr std::size_t longest_list = std::size_t{1} << 24;  ///< [elements]
 inline constexpr int deepest_struct = 200;
@@ -457,4 +457,4 @@ CAMBIUM_COLD void read_binary(std::string_view bytes, TypeInfo const& type, void
     throw ParameterError(where, "holds more than was read", "it is damaged: take another copy");
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

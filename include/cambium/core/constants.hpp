@@ -1,7 +1,7 @@
 #pragma once
 
 /// Quantities of traffic that several rooms need. What one model chooses for itself stands with that model.
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A vehicle slower than this counts as stopped, for drivers and for the rules of the road [m/s]. SUMO counts a slower
 /// vehicle as halting.
@@ -20,4 +20,4 @@ inline constexpr double same_time = 1e-9;
 /// Bounds of comfort of nuPlan's metrics, from human drivers [m/s^2] (Karnchanachari et al. 2024).
 inline constexpr double comfort_deceleration = 4.05, comfort_acceleration = 2.4, comfort_lateral_acceleration = 4.89;
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

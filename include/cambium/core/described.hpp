@@ -10,7 +10,7 @@
 
 #include "cambium/core/ids.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Valid values of a parameter: `low` to `high`, both included. An infinite bound admits infinity as a value; the
 /// ranges below do not.
@@ -148,4 +148,4 @@ constexpr void for_each_parameter(F&& f) {
   if constexpr (is_list) T::parameters()(f);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

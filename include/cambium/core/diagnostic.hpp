@@ -5,7 +5,7 @@
 
 #include "cambium/core/error.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How much a finding matters. A problem that leaves nothing usable is thrown as an `Error` instead.
 enum class Severity {
@@ -43,4 +43,4 @@ struct Diagnostic {
   return detail::printable(text + d.sentence);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -9,7 +9,7 @@
 #include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A normal distribution of which only what is between `low` and `high` is drawn, by inversion: takes one draw, and a
 /// larger random number never gives a smaller value. Bounds that are both farther than 37 deviations on one side of the
@@ -84,4 +84,4 @@ inline void check_draws(Distribution const& drawn, Range range, char const* name
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

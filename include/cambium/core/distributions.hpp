@@ -21,7 +21,7 @@
 // Draws never throw. To check parameters, call `check_parameters(distribution)` once, outside the step path; it throws
 // `ParameterError`.
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A source of 64 uniform random bits: `RandomStream` or a 64-bit standard engine.
 template <class Stream>
@@ -194,4 +194,4 @@ template <BitStream Stream>
   return last;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -45,7 +45,7 @@ struct WorldError : Error {
   using Error::Error;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/core/error_impl.hpp"

@@ -7,7 +7,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -48,4 +48,4 @@ CAMBIUM_COLD std::string printable(std::string_view text) {
 CAMBIUM_COLD Error::Error(std::string_view where, std::string_view what, std::string_view remedy)
     : std::runtime_error(detail::error_text(where, what, remedy)), where_(where) {}
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

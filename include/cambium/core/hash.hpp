@@ -9,7 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// FNV-1a (Fowler, Noll, Vo 1991) of 32 or 64 bits. The same on every platform.
 template <class Word>
@@ -54,4 +54,4 @@ class Fnv1a {
   return hash.value();
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Names an agent for its whole life. A world never reuses an id after the agent has left.
 enum class AgentId : std::uint32_t {};
@@ -85,4 +85,4 @@ template <StrongId Id>
   return is_valid(id) ? std::to_string(index_of(id)) : std::string("none");
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

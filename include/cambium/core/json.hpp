@@ -17,7 +17,7 @@
 /// An absent field keeps its default, so a file holds only what differs. A choice is written by name; an alternative as
 /// `{"its_name": {...}}`, or just `"its_name"` if all its fields have their defaults; infinity as "inf". Numbers are
 /// written such that they read back as the same bits.
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How much `to_json` writes.
 enum class JsonDetail : unsigned char {
@@ -78,7 +78,7 @@ template <Described T>
   return object;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/core/json_impl.hpp"

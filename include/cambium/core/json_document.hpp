@@ -12,7 +12,7 @@
 #endif
 
 /// JSON texts as trees; `core/json.hpp` reads and writes described structs. Needs nlohmann_json.
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// A value of a JSON document. Integers keep their bits.
 struct JsonValue {
@@ -62,7 +62,7 @@ bool print_flat(JsonValue const& value, std::size_t most, std::string& text);
 /// The text of a document, which ends with a line break. What is longer than `width` is broken into lines.
 [[nodiscard]] std::string print_json(JsonValue const& document, std::size_t width = 120);
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/core/json_document_impl.hpp"

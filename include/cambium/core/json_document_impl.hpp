@@ -16,7 +16,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// "line 3, column 7": the place of byte `offset` (from 0).
 [[nodiscard]] inline std::string place_in(std::string_view text, std::size_t offset) {
@@ -183,4 +183,4 @@ CAMBIUM_COLD std::string print_json(JsonValue const& document, std::size_t width
   return text += '\n';
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

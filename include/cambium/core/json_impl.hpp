@@ -20,7 +20,7 @@
 #include "cambium/core/text.hpp"
 #include "cambium/core/type_info.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// What an optional holds by default: what `usual` holds, else the default of its type.
 [[nodiscard]] inline void const* usual_inner(TypeInfo const& optional, void const* usual) {
@@ -346,4 +346,4 @@ CAMBIUM_COLD void read_json_value(JsonValue const& document, TypeInfo const& typ
   JsonReader(where, lanes, document).read_struct({nullptr, name}, type, object, type.usual(), document);
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

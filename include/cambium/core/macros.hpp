@@ -2,7 +2,7 @@
 
 #if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) < 202002L
 #error "cambium needs C++20: compile with -std=c++20, with CMake by target_link_libraries(... cambium::cambium)"
-#include <cambium/needs/C++20>  // there is no such file: the compiler stops here
+#include <C++20>  // there is no such file: the compiler stops here
 #endif
 
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)

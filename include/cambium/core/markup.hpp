@@ -10,7 +10,7 @@
 #include <utility>
 
 /// Numbers and text inside HTML, SVG and JSON.
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Appends `value` rounded to `decimals` places, without trailing zeros, regardless of the locale. A value that is not
 /// finite becomes `null`, "-0" becomes "0".
@@ -89,4 +89,4 @@ using Replacements = std::initializer_list<std::pair<char, std::string_view>>;
          '"';
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

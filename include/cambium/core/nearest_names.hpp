@@ -10,7 +10,7 @@
 
 #include "cambium/core/text.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The members `name` of a list's elements.
 template <class List>
@@ -59,4 +59,4 @@ template <class List>
   return near.empty() ? "give one of " + joined(names, ", ") : "is it " + joined(near, " or ") + "?";
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -6,7 +6,7 @@
 
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The memory of a model that keeps nothing between steps; takes no space in a frame.
 struct NoMemory {
@@ -77,4 +77,4 @@ struct OneOf : std::variant<Models...> {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -12,7 +12,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/type_info.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -181,7 +181,7 @@ void set_parameter(T& object, std::string_view key, double number, std::string c
   detail::set_number(type_info<T>(), &object, key, number, where);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/core/parameters_impl.hpp"

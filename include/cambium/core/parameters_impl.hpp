@@ -23,7 +23,7 @@
 #include "cambium/core/text.hpp"
 #include "cambium/core/type_info.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_COLD PlainValue PlainValue::at(void const* object, TypeInfo const& type) {
   PlainValue value{type.kind, 0.0, 0};
@@ -74,9 +74,9 @@ CAMBIUM_COLD PlainValue PlainValue::highest(TypeInfo const& type) {
   return {type.kind, static_cast<double>(bits), bits};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Adds a code for the binary form of a field.
 inline void add_letters(Fnv1a<std::uint32_t>& hash, TypeInfo const& type) {
@@ -484,4 +484,4 @@ CAMBIUM_COLD void set_number(TypeInfo const& type, void* object, std::string_vie
   value.store(object, *here);
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

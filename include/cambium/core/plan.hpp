@@ -8,7 +8,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/state.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What an agent does over a step. It is recorded; only the agent itself and evaluators see it.
 struct Action {
@@ -56,4 +56,4 @@ struct BasicPlan {
 template <class View>
 using Plan = BasicPlan<typename View::State>;
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

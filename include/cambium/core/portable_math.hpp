@@ -20,7 +20,7 @@
 /// cannot change them; they are long, and never inlined. With g++ and clang on x86-64 they take the processor's
 /// instruction for these where it has one, also in programs that are compiled without. `exp` is faster than
 /// `fused_exp`.
-namespace cambium::portable {
+namespace cambium::inline v0_1::portable {
 
 namespace detail {
 
@@ -363,4 +363,4 @@ template <std::same_as<float> F>
   return static_cast<F>(pow(double{x}, double{y}));
 }
 
-}  // namespace cambium::portable
+}  // namespace cambium::inline v0_1::portable

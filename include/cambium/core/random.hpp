@@ -5,7 +5,7 @@
 
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Counter of `philox4x32`.
 using PhiloxCounter = std::array<std::uint32_t, 4>;
@@ -96,4 +96,4 @@ class RandomStream {
   bool has_spare_ = false;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 
 #include "cambium/core/error.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What `read_file` takes for a file of its kind.
 struct FileKind {
@@ -66,4 +66,4 @@ template <class Kind>
   return text;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The elements of a list, by their numbers, in the order that a stable sort gives them; empty if they have it already.
 /// Compiled once for all element types, which saves compile time where sorting is rare.
@@ -33,7 +33,7 @@ bool stable_sort(std::vector<Element>& elements, Key const& key) {
       elements, [&key](Element const& l, Element const& r) { return std::invoke(key, l) < std::invoke(key, r); });
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/core/stable_sort_impl.hpp"

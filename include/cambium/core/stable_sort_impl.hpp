@@ -9,7 +9,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/stable_sort.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 // std::stable_sort of libstdc++ 12 causes warnings in clang 19, hence std::sort of indices with ties broken by index.
 CAMBIUM_COLD std::vector<std::size_t> stable_order(
@@ -24,4 +24,4 @@ CAMBIUM_COLD std::vector<std::size_t> stable_order(
   return order;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

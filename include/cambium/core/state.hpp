@@ -7,7 +7,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/macros.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Planar motion state of an agent's reference point (vehicles: centre of the rear axle), in the map frame.
 template <class Scalar>
@@ -59,4 +59,4 @@ template <MotionState S>
   return std::isfinite(s.time + s.x + s.y + s.heading + s.speed);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

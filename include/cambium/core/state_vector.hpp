@@ -4,7 +4,7 @@
 
 #include "cambium/core/state.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// (time, x, y, heading, speed) as a fixed-size Eigen vector.
 template <class Scalar>
@@ -18,4 +18,4 @@ template <class Scalar>
   return {v[0], v[1], v[2], v[3], v[4]};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

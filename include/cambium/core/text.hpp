@@ -15,7 +15,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A hash as in files, databases and messages: 16 hexadecimal digits.
 [[nodiscard]] inline std::string hash_text(std::uint64_t hash) {
@@ -33,10 +33,10 @@ namespace cambium {
   return quoted + "'";
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 /// Parsing of words and numbers in user text.
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// `text` without the `blank` characters at its ends.
 [[nodiscard]] constexpr std::string_view trimmed(std::string_view text, std::string_view blank = " \t\r\n") {
@@ -134,4 +134,4 @@ template <class Number>
   return value;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -21,7 +21,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/one_of.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 struct TypeInfo;
 
@@ -442,4 +442,4 @@ struct PlainValue {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

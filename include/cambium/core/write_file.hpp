@@ -9,7 +9,7 @@
 
 #include "cambium/core/error.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -70,4 +70,4 @@ inline void write_file(std::filesystem::path const& path, std::string_view text)
   if (problem) throw detail::cannot_write(path, problem);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

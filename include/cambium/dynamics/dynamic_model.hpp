@@ -7,7 +7,7 @@
 #include "cambium/core/plan.hpp"
 #include "cambium/core/state.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A vehicle model: how inputs change a state. A model has
 ///   - `State`, with the fields of `BasicState` and maybe more, all of them described; or with an `add_scaled(state,
@@ -59,4 +59,4 @@ template <class Input>
     return asked;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

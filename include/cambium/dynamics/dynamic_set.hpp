@@ -6,7 +6,7 @@
 #include "cambium/dynamics/dynamic_model.hpp"
 #include "cambium/dynamics/integration.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// One of a closed set of vehicle models with the same state, so that trucks and pedestrians can share a world. Each
 /// agent holds one model, by default the first: `DynamicSet<SingleTrack, KinematicPoint>(KinematicPoint{})`. The input
@@ -42,4 +42,4 @@ template <bool euler = false, class... Models>
   return set.visit([&](auto const& model) { return cambium::drive<euler>(model, x, action, dt); });
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

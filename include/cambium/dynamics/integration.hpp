@@ -5,7 +5,7 @@
 
 #include "cambium/dynamics/dynamic_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// One explicit Euler step over `dt` [s] with a constant input; order 1. State and input may have any scalar type that
 /// the model takes.
@@ -79,4 +79,4 @@ template <bool euler = false, DynamicModel Model>
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Input of `KinematicPoint`.
 template <class Scalar>
@@ -68,4 +68,4 @@ struct KinematicPoint {
 };
 static_assert(DynamicModel<KinematicPoint>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Input of the single-track model: the driver's action, held over a step.
 template <class Scalar>
@@ -132,4 +132,4 @@ static_assert(DynamicModel<SingleTrack>);
           x.heading + sixth * curvature * (x.speed + 4.0 * middle + end), end};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A motion state with the steering angle of the front wheels.
 template <class Scalar>
@@ -96,4 +96,4 @@ struct SingleTrackSteering {
 };
 static_assert(DynamicModel<SingleTrackSteering>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A motion state with its acceleration.
 template <class Scalar>
@@ -191,4 +191,4 @@ struct TripleIntegrator {
 };
 static_assert(DynamicModel<TripleIntegrator>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

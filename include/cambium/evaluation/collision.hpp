@@ -22,7 +22,7 @@
 #include "cambium/world/frame.hpp"
 #include "cambium/world/static_object.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Whether the agent at `slot` drives, rather than having left or not yet entered.
 template <class World>
@@ -523,4 +523,4 @@ struct AnyCollision {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

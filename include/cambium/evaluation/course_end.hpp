@@ -7,7 +7,7 @@
 #include "cambium/evaluation/off_road.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How an agent's course ends.
 enum class CourseEnd : std::uint8_t {
@@ -38,4 +38,4 @@ template <class World, class Collides = Collision>
   return leaves ? CourseEnd::off_road : CourseEnd::none;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

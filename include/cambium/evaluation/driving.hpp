@@ -17,7 +17,7 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Whether an agent is at its goal; false without a goal.
 struct AtGoal {
@@ -328,4 +328,4 @@ struct Closeness {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

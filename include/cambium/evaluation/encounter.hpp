@@ -18,7 +18,7 @@
 
 // How near an agent is to all other road users and static objects: where these are, and where they will be.
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -257,4 +257,4 @@ struct BrakeThreatNumber {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "cambium/core/ids.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Judges one agent of a world: a copyable struct with
 ///   `template <class World> auto operator()(World const& world, Slot slot) const`
@@ -19,4 +19,4 @@ concept EvaluatorFor = std::copyable<E> && requires(E const evaluator, World& wo
   { evaluator(world, Slot{}) } -> std::convertible_to<double>;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -16,7 +16,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Whether the motion of an agent's last step is one that no vehicle can make, by its states before and after it:
 ///
@@ -213,4 +213,4 @@ struct Infeasible {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

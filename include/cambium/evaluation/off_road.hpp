@@ -14,7 +14,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Whether an agent in traffic has left the drivable lanes of the map: a corner of its box, or the middle of a side,
 /// lies in no drivable lane. O(log lanes); O(1) well inside its own lane.
@@ -161,4 +161,4 @@ struct OncomingLane {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

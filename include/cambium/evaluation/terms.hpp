@@ -8,7 +8,7 @@
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What a step is worth to an agent, and whether its course ends there.
 struct Judgement {
@@ -136,4 +136,4 @@ struct Terms<First, Rest...> {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

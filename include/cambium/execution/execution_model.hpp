@@ -7,7 +7,7 @@
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The result of executing a plan.
 template <MotionState S>
@@ -62,4 +62,4 @@ template <class E, MotionState S, class Dynamics, class Memory, class Random>
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

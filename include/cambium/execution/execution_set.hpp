@@ -5,7 +5,7 @@
 #include "cambium/core/one_of.hpp"
 #include "cambium/execution/execution_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// One of a closed set of execution models, so that the agents of one world may use different ones:
 /// `ExecutionSet<InterpolateExecution, StanleyExecution>(StanleyExecution{})`. The default is the first.
@@ -27,4 +27,4 @@ struct ExecutionSet : OneOf<Models...> {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

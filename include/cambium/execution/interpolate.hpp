@@ -7,7 +7,7 @@
 #include "cambium/execution/execution_model.hpp"
 #include "cambium/geometry/angle.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Perfect execution: returns the plan's state at the requested time. Between two samples, or between now and the first
 /// sample, it interpolates every field linearly (with the vehicle model's `add_scaled`), the heading the short way
@@ -50,4 +50,4 @@ struct InterpolateExecution {
 };
 static_assert(ExecutionModel<InterpolateExecution>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

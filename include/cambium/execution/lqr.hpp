@@ -6,7 +6,7 @@
 #include "cambium/execution/lqr_gain.hpp"
 #include "cambium/execution/tracking.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Tracks the plan with two discrete-time linear-quadratic regulators. The lateral one corrects offset and heading by
 /// steering, the longitudinal one lag and speed by acceleration. The lateral gain belongs to the speed at the beginning
@@ -70,4 +70,4 @@ struct LqrExecution {
 };
 static_assert(ExecutionModel<LqrExecution>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A 2 x 2 matrix: all that LQR needs here, and faster to compile than a matrix library.
 struct Matrix2 {
@@ -49,4 +49,4 @@ struct LqrGain {
   return {k * (h1 * start.a + h2 * start.c), k * (h1 * start.b + h2 * start.d)};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

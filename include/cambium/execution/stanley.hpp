@@ -4,7 +4,7 @@
 #include "cambium/execution/steering.hpp"
 #include "cambium/execution/tracking.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Tracks the plan with two controllers: Stanley's law for the steering (Hoffmann et al. 2007), and a PI controller for
 /// the speed, whose integral term is the distance that the vehicle lags behind.
@@ -51,4 +51,4 @@ struct StanleyExecution {
 };
 static_assert(ExecutionModel<StanleyExecution>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

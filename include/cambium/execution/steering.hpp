@@ -2,7 +2,7 @@
 
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Stanley's steering law: the steering angle [rad] that brings a vehicle's front axle to a line (Hoffmann, Tomlin,
 /// Montemerlo, Thrun 2007, "Autonomous automobile trajectory tracking for off-road driving", eq. 5). `heading_error`:
@@ -24,4 +24,4 @@ namespace cambium {
   return square / (square + travelled * (0.5 * wheel_base + travelled * (1.0 / 12)));
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

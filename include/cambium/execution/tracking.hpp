@@ -15,7 +15,7 @@
 #include "cambium/execution/execution_model.hpp"
 #include "cambium/geometry/angle.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Delay and noise between a controller's commands and the vehicle. With a delay, the controller acts four times per
 /// delay, and a command takes effect when the fourth one after it is given:
@@ -199,4 +199,4 @@ template <class Law, MotionState S, class Dynamics>
   return {x, true};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

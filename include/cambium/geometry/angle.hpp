@@ -5,7 +5,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// pi, rounded to double.
 inline constexpr double pi = 3.14159265358979323846;
@@ -31,4 +31,4 @@ inline constexpr double pi = 3.14159265358979323846;
 /// The turn from direction `b` to direction `a`: `a - b` in (-pi, pi], positive if `a` lies counter-clockwise of `b`.
 [[nodiscard]] inline double angle_difference(double a, double b) { return normalize_angle(a - b); }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

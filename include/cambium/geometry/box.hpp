@@ -6,7 +6,7 @@
 
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// An axis-aligned rectangle in the map frame [m], borders included. A default one is empty.
 struct Box {
@@ -48,4 +48,4 @@ struct Box {
   return box;
 }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

@@ -12,7 +12,7 @@
 
 #include "cambium/geometry/box.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 namespace detail {
 
@@ -171,4 +171,4 @@ class BoxTree {
   double origin_x_ = 0.0, origin_y_ = 0.0;
 };
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

@@ -12,7 +12,7 @@
 // All regions are closed: touching regions intersect, and a region may touch the border of one that contains it.
 // Results are exact up to rounding, about 1e-15 of the size of the coordinates. Nothing here allocates.
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// Whether two rectangles share a point. By the separating-axis theorem, they are disjoint if and only if their
 /// projections on one of their four side directions are. Takes a few nanoseconds, fewer if they are far apart.
@@ -163,4 +163,4 @@ template <bool closed>
   return nearest;
 }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

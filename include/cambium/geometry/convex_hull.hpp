@@ -9,7 +9,7 @@
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// The corners of the convex hull of `points`, counter-clockwise, without points on straight sides (Andrew 1979). Fewer
 /// than three if all points lie on one line. All coordinates must be finite. O(n log n).
@@ -53,4 +53,4 @@ namespace cambium::geometry {
   return subject;
 }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

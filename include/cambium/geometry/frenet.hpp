@@ -8,7 +8,7 @@
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/shape.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// A motion state relative to a `Line`. The speeds are the components of the velocity along and across the line's
 /// direction at `s`. On a curve of curvature k, s changes at the rate longitudinal_speed / (1 - k lateral).
@@ -104,4 +104,4 @@ namespace detail {
           angle_difference(second.heading_error, first.heading_error)};
 }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

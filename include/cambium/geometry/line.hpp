@@ -14,7 +14,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// A sample of a curve: position [m] and direction [rad].
 using LineSample = Pose;
@@ -303,4 +303,4 @@ class Line {
   bool has_first_ = false;
 };
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

@@ -12,7 +12,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// A rectangle that moves from one state to another with constant acceleration and, to second order in the change of
 /// its heading, along an arc. Times `t` are shares of the whole motion, from 0 to 1.
@@ -115,4 +115,4 @@ template <class Gap>
   return detail::closes(longest_way(box), [&](double t) { return distance(box.at(t), polygon); });
 }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

@@ -9,7 +9,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// A rotated rectangle in the map frame: centre, half side lengths [m], and heading. 48 bytes.
 struct OrientedBox {
@@ -64,4 +64,4 @@ template <MotionState S>
   return box_of(shape, Pose{state.x, state.y, state.heading});
 }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

@@ -16,7 +16,7 @@
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// Twice the signed area of the triangle a, b, c [m^2]: positive if c lies to the left of the line from a to b.
 [[nodiscard]] inline double turn(Point const& a, Point const& b, Point const& c) {
@@ -175,4 +175,4 @@ inline bool Polygon::is_simple() const {
 /// The rectangle as a polygon. Throws `Error` if its area is zero.
 [[nodiscard]] inline Polygon polygon_of(OrientedBox const& box) { return Polygon(box.corners()); }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

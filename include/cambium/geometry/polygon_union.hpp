@@ -6,7 +6,7 @@
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// A connected area with holes.
 struct Area {
@@ -26,7 +26,7 @@ struct Area {
 /// number of polygons overlap anywhere.
 [[nodiscard]] std::vector<Area> union_of(std::span<Polygon const> polygons);
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/geometry/polygon_union_impl.hpp"

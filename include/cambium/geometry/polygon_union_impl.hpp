@@ -7,7 +7,7 @@
 #include "cambium/geometry/detail/boost_polygon.hpp"
 #include "cambium/geometry/polygon_union.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 CAMBIUM_COLD std::vector<Area> union_of(std::span<Polygon const> polygons) {
   std::vector<detail::BoostArea> parts;
@@ -34,4 +34,4 @@ CAMBIUM_COLD std::vector<Area> union_of(std::span<Polygon const> polygons) {
   return areas;
 }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

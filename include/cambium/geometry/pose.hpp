@@ -7,7 +7,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// A vector of two doubles from another library, such as Eigen: it has `x()`, `y()` and a constant size.
 template <class V>
@@ -103,4 +103,4 @@ struct Pose {
   return {c * dx + s * dy, -s * dx + c * dy};
 }
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

@@ -5,7 +5,7 @@
 
 #include "cambium/core/parameters.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 
 /// A rectangle around a road user, given by the distances [m] of its sides from the reference point. The agent's pose
 /// is that of the reference point: for vehicles, the centre of the rear axle on the ground.
@@ -94,4 +94,4 @@ struct Extent {
 /// Road users up to this length are on foot [m]. Own choice.
 inline constexpr double longest_on_foot = 1.0;
 
-}  // namespace cambium::geometry
+}  // namespace cambium::inline v0_1::geometry

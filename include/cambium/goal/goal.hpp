@@ -8,7 +8,7 @@
 #include "cambium/goal/own_goal.hpp"
 #include "cambium/goal/simple_goals.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 struct AllGoals;
 struct AnyGoal;
@@ -71,7 +71,7 @@ static_assert(GoalModel<NoGoal> && GoalModel<ReachPolygon> && GoalModel<ReachLan
 /// True when the goal is reached. Pure.
 [[nodiscard]] bool at_goal(Goal const& goal, GoalSituation const& situation);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/goal/goal_impl.hpp"

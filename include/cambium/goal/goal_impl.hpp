@@ -6,7 +6,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/goal/goal.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_NOINLINE CAMBIUM_COLD bool at_goal(Goal const& goal, GoalSituation const& situation) {
   return goal.visit([&](auto const& g) { return g.at_goal(situation); });
@@ -27,4 +27,4 @@ CAMBIUM_NOINLINE CAMBIUM_COLD std::size_t GoalSequence::pass(GoalSituation const
   return passed;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

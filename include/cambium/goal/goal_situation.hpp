@@ -7,7 +7,7 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// An agent's situation: the input of a goal.
 struct GoalSituation {
@@ -24,4 +24,4 @@ struct GoalSituation {
   std::size_t passed{};                     ///< number of parts of its `GoalSequence` already reached
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

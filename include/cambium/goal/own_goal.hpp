@@ -12,7 +12,7 @@
 #include "cambium/goal/goal_situation.hpp"
 #include "cambium/map/fwd.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 template <class G>
@@ -44,7 +44,8 @@ class OwnGoal {
         "cambium::Goal: your goal's `lanes` would be ignored; write `std::vector<cambium::LaneId> lanes(cambium::Map "
         "const&) const`");
     static_assert(
-        !requires { requires std::is_member_function_pointer_v<decltype(&G::check)>; } || requires(G const own, std::string const& where) { own.check(where); },
+        !requires { requires std::is_member_function_pointer_v<decltype(&G::check)>; } ||
+            requires(G const own, std::string const& where) { own.check(where); },
         "cambium::Goal: your goal's `check` would be ignored; write `void check(std::string const& where) "
         "const`");
   }
@@ -118,4 +119,4 @@ class OwnGoal {
   Operations const* operations_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -15,7 +15,7 @@
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/goal/goal_situation.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 /// All numbers, infinity included.
@@ -223,4 +223,4 @@ struct ReachLaneBeside {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

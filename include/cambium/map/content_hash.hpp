@@ -9,7 +9,7 @@
 #include "cambium/core/hash.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Hash of what traffic knows of a map: lanes, their paths, widths, links, limits, signals and conflicts' rules; not of
 /// the file's text. Numbers count by the thousandth, so equal files almost always give equal hashes, whatever the
@@ -57,8 +57,8 @@ namespace cambium::map {
   return hash.value();
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 using map::content_hash;
 }

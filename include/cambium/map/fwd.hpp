@@ -3,7 +3,7 @@
 #include <cstdint>
 
 /// Forward declarations of the map room.
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 class Map;
 struct Lane;
@@ -14,8 +14,8 @@ struct FreeCorridorOptions;
 struct StopLine;
 enum class RoadDirection : std::uint8_t;
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 using map::Map;
 }

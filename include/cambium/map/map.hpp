@@ -27,7 +27,7 @@
 #include "cambium/map/road/road.hpp"
 #include "cambium/map/routing/route.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// How a map is built.
 struct MapOptions {
@@ -269,9 +269,9 @@ class Map {
   mutable std::atomic<std::uint64_t> content_hash_{0};
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 using map::Map;
 using map::MapOptions;
 
@@ -294,4 +294,4 @@ detail::NotIncluded load_lanelet2(...) {
                 "cambium::load_lanelet2: include <cambium/map/lanelet/lanelet2.hpp> (needs pugixml)");
   return {};
 }
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

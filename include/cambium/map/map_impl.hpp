@@ -14,7 +14,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/routing/detail/find_routes.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -101,4 +101,4 @@ CAMBIUM_COLD Map::Map(Parts parts)
       bounds_(detail::bounds_of(parts_.lanes)),
       queries_(std::make_unique<detail::CompiledQueries const>()) {}
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -12,11 +12,11 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/routing/route.hpp"
 
-namespace cambium::geometry {
+namespace cambium::inline v0_1::geometry {
 class Polygon;
 }
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// The rare queries of a map that take long to compile: routes, corridors, areas of junctions. Whoever makes a map
 /// compiles them (`map_impl.hpp`); everybody else calls them through the map, by the functions named here.
@@ -48,4 +48,4 @@ class MapQueries {
   [[nodiscard]] virtual std::vector<StopLine> stop_lines(Map const& map) const = 0;
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -13,7 +13,7 @@
 #error "cambium::compiled has no OpenDRIVE reader because CMake did not find pugixml: install it (libpugixml-dev)"
 #endif
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A map read from a file, and the findings about it.
 struct LoadedMap {
@@ -35,13 +35,13 @@ struct LoadedMap {
 /// of with `build_map`. Throws `MapError` as `load_opendrive`.
 [[nodiscard]] OpenDriveDocument load_opendrive_document(std::string const& path, std::vector<Diagnostic>& diagnostics);
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 using map::load_opendrive;
 using map::LoadedMap;
 using map::parse_opendrive;
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/opendrive_impl.hpp"

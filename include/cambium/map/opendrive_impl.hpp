@@ -8,7 +8,7 @@
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 CAMBIUM_COLD LoadedMap parse_opendrive(std::string_view text, MapOptions const& options, std::string const& file) {
   LoadedMap result;
@@ -25,4 +25,4 @@ CAMBIUM_COLD OpenDriveDocument load_opendrive_document(std::string const& path, 
   return read_opendrive_document(detail::read_map_file(path, "give an OpenDRIVE file (.xodr)"), path, diagnostics);
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

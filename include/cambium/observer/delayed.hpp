@@ -6,7 +6,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/observer/observer_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Perceives states and accelerations with a delay of some steps, at most `LongestDelay`. Each record grows by 48 bytes
 /// per step of `LongestDelay`. An agent that entered within the delay is seen in the state in which it entered. The
@@ -43,4 +43,4 @@ struct DelayedObserver {
 };
 static_assert(ObserverModel<DelayedObserver<1>>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -10,7 +10,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/observer/observer_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -104,4 +104,4 @@ struct ObserverChain : detail::ObserverStages<std::index_sequence_for<Observers.
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 #include "cambium/core/random.hpp"
 #include "cambium/core/state.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A model of an agent's perception: `observe` returns the state that the agent believes another agent, or itself, to
 /// be in. Pure: random numbers come from `random`, a stream keyed by (seed, observer, step) with the observed agent as
@@ -115,4 +115,4 @@ struct PastStates {
   friend bool operator==(PastStates const&, PastStates const&) = default;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

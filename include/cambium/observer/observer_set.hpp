@@ -8,7 +8,7 @@
 #include "cambium/core/one_of.hpp"
 #include "cambium/observer/observer_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// One of several observer models, for worlds whose agents perceive differently.
 template <ObserverModel... Observers>
@@ -40,4 +40,4 @@ struct ObserverSet : OneOf<Observers...> {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

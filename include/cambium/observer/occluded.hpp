@@ -17,7 +17,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/observer/observer_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -291,4 +291,4 @@ struct OccludedObserver {
 };
 static_assert(ObserverModel<OccludedObserver>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -14,7 +14,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/observer/observer_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Normally distributed errors of a perceived state: means, standard deviations and correlations of the errors along
 /// and across the heading, of the heading and of the speed.
@@ -173,4 +173,4 @@ struct ParametricObserver {
 };
 static_assert(ObserverModel<ParametricObserver>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -2,7 +2,7 @@
 
 #include "cambium/observer/observer_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Sees all agents and objects in their true states.
 struct PerfectObserver {
@@ -19,4 +19,4 @@ struct PerfectObserver {
 };
 static_assert(ObserverModel<PerfectObserver>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -15,7 +15,7 @@
 #include "cambium/planner/predicted.hpp"
 #include "cambium/planner/search/search_result.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What a planner that compares candidates works with. The planner's own `Workspace` may derive from it.
 template <class World, class Candidate>
@@ -185,4 +185,4 @@ template <class Planner, class View>
   return report;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

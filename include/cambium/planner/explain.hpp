@@ -14,7 +14,7 @@
 #include "cambium/planner/search/search_result.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Adds to each candidate of a report its path, and the agent because of whom it can be no better: the one that is
 /// soonest before or after ego in one place, up to 3 s apart, as the planner foresees it (deviations that it also
@@ -60,4 +60,4 @@ void explain(Planner const& planner, View const& view, typename Planner::Memory 
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

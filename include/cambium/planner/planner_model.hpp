@@ -13,7 +13,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/state.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// One of the options that a planner compares.
 struct PlannerCandidate {
@@ -109,4 +109,4 @@ template <class IsRival>
   return range > 0.0 ? std::clamp((score - second) / range, 0.0, 1.0) : 0.0;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -24,7 +24,7 @@
 #include "cambium/world/prediction.hpp"
 #include "cambium/world/world.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -336,4 +336,4 @@ void agents_to_avoid(Roster const& roster, Frame const& frame, Slot ego, std::ve
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -13,7 +13,7 @@
 #include "cambium/scenario/scenario.hpp"
 #include "cambium/world/world.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A road with several lanes in one direction: samples traffic of cars and trucks on all of them. Made by
 /// `find_highway_site`.
@@ -37,7 +37,7 @@ struct HighwaySite {
 /// lanes, and of these, the longest. Throws `MapError` at `where`, the map's file, if there is none of 150 m. O(lanes).
 [[nodiscard]] HighwaySite find_highway_site(std::shared_ptr<Map const> map, std::string const& where = "map");
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/highway_site_impl.hpp"

@@ -22,7 +22,7 @@
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/lane_traffic.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -177,4 +177,4 @@ CAMBIUM_COLD HighwaySite find_highway_site(std::shared_ptr<Map const> map, std::
                  "give a map with a highway, such as maps/highway_exit.xodr");
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

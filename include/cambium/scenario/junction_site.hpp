@@ -17,7 +17,7 @@
 #include "cambium/scenario/vehicle_mix.hpp"
 #include "cambium/world/world.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What traffic at junctions consists of.
 struct JunctionTraffic {
@@ -64,7 +64,7 @@ struct JunctionSite {
 /// junction. O(lanes).
 [[nodiscard]] JunctionSite find_junction_site(std::shared_ptr<Map const> map, std::string const& where = "map");
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/junction_site_impl.hpp"

@@ -19,7 +19,7 @@
 #include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -150,4 +150,4 @@ CAMBIUM_COLD JunctionSite find_junction_site(std::shared_ptr<Map const> map, std
   return site;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -30,7 +30,7 @@
 #include "cambium/scenario/traffic_population.hpp"
 #include "cambium/world/agent_spec.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A behaviour parameter drawn separately for each driver.
 struct DrawnParameter {
@@ -387,4 +387,4 @@ template <class World>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

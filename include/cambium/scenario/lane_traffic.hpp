@@ -13,7 +13,7 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/scenario/vehicle_mix.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A vehicle sampled for a lane corridor.
 struct LaneVehicle {
@@ -101,4 +101,4 @@ struct LaneTraffic {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -17,7 +17,7 @@
 #include "cambium/scenario/vehicle_mix.hpp"
 #include "cambium/world/world.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What traffic at a merge consists of.
 struct MergingTraffic {
@@ -72,7 +72,7 @@ struct MergingSite {
 /// way. Throws `MapError` at `where`, the map's file, if no traffic merges. O(lanes).
 [[nodiscard]] MergingSite find_merging_site(std::shared_ptr<Map const> map, std::string const& where = "map");
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/merging_site_impl.hpp"

@@ -25,7 +25,7 @@
 #include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/scenario/merging_site.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -240,4 +240,4 @@ CAMBIUM_COLD MergingSite find_merging_site(std::shared_ptr<Map const> map, std::
   return site;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -21,7 +21,7 @@
 #include "cambium/scenario/traffic_inflow.hpp"
 #include "cambium/scenario/traffic_population.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Scenarios of one kind on one map, drawn from a seed: what a file holds instead of thousands of scenarios.
 template <class World>
@@ -160,4 +160,4 @@ template <class World>
   return scenarios;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

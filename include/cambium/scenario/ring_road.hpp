@@ -7,7 +7,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/routing/route.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A circular one-lane road, driven counter-clockwise, with a route of several laps. It serves to study traffic without
 /// boundary effects.
@@ -29,7 +29,7 @@ struct RingRoad {
 /// 100 km and there are 1 to 1000 laps. O(laps).
 [[nodiscard]] RingRoad make_ring_road(double length, int laps);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/ring_road_impl.hpp"

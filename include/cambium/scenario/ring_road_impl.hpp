@@ -7,7 +7,7 @@
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/scenario/ring_road.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_COLD RingRoad make_ring_road(double length, int laps) {
   if (!(length >= 100.0 && length <= 1e5))
@@ -37,4 +37,4 @@ CAMBIUM_COLD RingRoad make_ring_road(double length, int laps) {
   return ring;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

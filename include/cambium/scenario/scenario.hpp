@@ -16,7 +16,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/lanes/signals.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 inline void require_map(std::shared_ptr<Map const> const& map, std::string const& where) {
@@ -126,4 +126,4 @@ template <class OtherWorld, class WorldType, class ToBehavior>
   return other;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -28,7 +28,7 @@
 ///       {"id": 0, "position": {"x": 20, "y": -5.25}, "speed": 12, "behavior": {"idm_classic": {"law":
 ///       {"desired_speed": 20}}},
 ///        "goal": {"reach_lane": {"lane": "3/0/-2"}}}]}]}
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -156,4 +156,4 @@ template <class WorldType>
   return to_binary(packed);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -17,7 +17,7 @@
 #include "cambium/scenario/recipe.hpp"
 #include "cambium/scenario/scenario.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What can make a run no success, besides a collision: a motion that no vehicle can make, or a broken rule.
 enum class Criterion : std::uint8_t {
@@ -118,4 +118,4 @@ struct ScenarioSet {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

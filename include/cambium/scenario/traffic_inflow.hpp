@@ -27,7 +27,7 @@
 #include "cambium/map/routing/route.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A place where traffic comes into the map, and how much of it.
 struct TrafficSource {
@@ -300,7 +300,7 @@ class TrafficInflow {
   std::vector<Left> left_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/traffic_inflow_impl.hpp"

@@ -10,7 +10,7 @@
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -101,4 +101,4 @@ CAMBIUM_COLD map::Route random_route(Map const& map, LaneId from, RandomStream& 
   return route;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 #include "cambium/core/random.hpp"
 #include "cambium/core/text.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How the drivers of a recipe's vehicles differ from those that it gives: most numbers of a driver are drawn around
 /// those of its population, see `presets::Temperament::drawn_around`.
@@ -80,4 +80,4 @@ template <class World, class Given>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 #include "cambium/core/random.hpp"
 #include "cambium/geometry/shape.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Which vehicles traffic consists of. Those that are nothing else are cars.
 struct VehicleMix {
@@ -38,4 +38,4 @@ struct VehicleMix {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -15,7 +15,7 @@
 #include "cambium/core/type_info.hpp"
 #include "cambium/snapshot/snapshot_error.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Writes fields to an archive of Boost.Serialization.
 template <class Archive>
@@ -106,7 +106,7 @@ concept SerializesItself = requires(T object, Archive& archive) {
   object.serialize(archive, 0u);
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
 namespace boost::serialization {
 

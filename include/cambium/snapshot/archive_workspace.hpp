@@ -19,7 +19,7 @@
 #include "cambium/snapshot/archive_fields.hpp"
 #include "cambium/snapshot/archive_world.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -284,7 +284,7 @@ template <class Search>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 namespace boost::serialization {
 

@@ -26,7 +26,7 @@
 #include "cambium/snapshot/archive_fields.hpp"
 #include "cambium/world/world.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -416,7 +416,7 @@ template <class World>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 namespace boost::serialization {
 

@@ -4,7 +4,7 @@
 
 #include "cambium/snapshot/snapshot.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Keeps a snapshot with each failed run of a benchmark: the last argument of `contender` or `contender_by`. Its parts
 /// are the world, a `ContenderWorld<ScenarioWorld, Behavior>`, and the `RunPosition`; its component is the contender's
@@ -20,4 +20,4 @@ struct FreezeRun {
 /// The `FreezeRun` to pass to a benchmark.
 inline constexpr FreezeRun freeze_run{};
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -21,7 +21,7 @@
 #include "cambium/snapshot/archive_world.hpp"
 #include "cambium/snapshot/snapshot_error.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 template <class Domain, class Options>
 class MctsWorkspace;
@@ -222,7 +222,7 @@ template <class... Parts>
   return detail::hash_of_parts(saved);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/snapshot/snapshot_impl.hpp"

@@ -2,11 +2,11 @@
 
 #include "cambium/core/error.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A snapshot cannot be taken, written or read.
 struct SnapshotError : Error {
   using Error::Error;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

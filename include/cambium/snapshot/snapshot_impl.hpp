@@ -38,7 +38,7 @@
 ///     archive binary                lines of the head
 ///     ...
 ///                                   an empty line, then the map, if there is one, then the archive
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 inline constexpr std::string_view snapshot_magic = "cambium snapshot ";
 inline constexpr std::uint64_t snapshot_version = 1;
@@ -427,12 +427,12 @@ CAMBIUM_COLD std::uint64_t hash_of_parts(std::span<SavedPart const> parts) {
   return checksum_of(save_parts<BinaryOut>(parts));
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_COLD SnapshotInfo snapshot_info(std::string_view bytes, std::string const& where) {
   return detail::open_snapshot(bytes, where);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -17,7 +17,7 @@
 #include "cambium/snapshot/snapshot.hpp"
 #include "cambium/world/step_result.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// When and where a `SnapshotRecorder` writes.
 struct SnapshotRecorderOptions {
@@ -136,7 +136,7 @@ class SnapshotRecorder {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/snapshot/snapshot_recorder_impl.hpp"

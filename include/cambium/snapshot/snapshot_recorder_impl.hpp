@@ -24,7 +24,7 @@
 #include "cambium/core/write_file.hpp"
 #include "cambium/snapshot/snapshot_recorder.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What the recorder and its thread share.
 struct SnapshotRecorder::State {
@@ -300,4 +300,4 @@ CAMBIUM_COLD SnapshotRecorder::Outcome SnapshotRecorder::outcome() const {
   return state_->outcome;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

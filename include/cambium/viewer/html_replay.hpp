@@ -5,7 +5,7 @@
 
 #include "cambium/viewer/recording.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// An HTML page that plays the recording in any browser of 2023 or later, without further files or a network. UTF-8;
 /// the same recording gives the same bytes. Positions are rounded to 1 cm, headings to 1 mrad, speeds to 1 cm/s, times
@@ -19,7 +19,7 @@ namespace cambium {
 /// and the reason when it cannot be written.
 void write_html_replay(std::filesystem::path const& path, Recording const& recording);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/viewer/html_replay_impl.hpp"

@@ -20,7 +20,7 @@
 #include "cambium/viewer/html_replay.hpp"
 #include "cambium/viewer/recording.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -209,4 +209,4 @@ CAMBIUM_COLD void write_html_replay(std::filesystem::path const& path, Recording
   write_file(path, html_replay(recording));
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

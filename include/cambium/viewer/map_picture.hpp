@@ -6,7 +6,7 @@
 #include "cambium/map/fwd.hpp"
 #include "cambium/viewer/map_picture_options.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A picture of the map as SVG: lanes coloured by type, travel directions, ids (road:lane), links to successors, the
 /// places where lanes cross, merge and split, and a legend. Elements have tooltips. Throws `Error` if the width is out
@@ -22,7 +22,7 @@ namespace cambium {
 /// if the file cannot be written.
 void write_map_picture(std::filesystem::path const& path, Map const& map, MapPictureOptions const& options = {});
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/viewer/map_picture_impl.hpp"

@@ -13,7 +13,7 @@
 #include "cambium/viewer/map_picture.hpp"
 #include "cambium/viewer/map_picture_options.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_COLD std::string svg_map_picture(Map const& map, MapPictureOptions const& options) {
   return detail::MapDrawing(map, options).text(options.legend);
@@ -34,4 +34,4 @@ CAMBIUM_COLD void write_map_picture(std::filesystem::path const& path, Map const
   write_file(path, ending == ".svg" ? svg_map_picture(map, options) : html_map_picture(map, options));
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

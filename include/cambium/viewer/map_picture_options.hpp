@@ -5,7 +5,7 @@
 
 #include "cambium/geometry/box.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What `svg_map_picture` shows besides the lanes.
 struct MapPictureOptions {
@@ -21,4 +21,4 @@ struct MapPictureOptions {
   bool legend = true;     ///< the meaning of the colours, below the map (on a page: in its panel)
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

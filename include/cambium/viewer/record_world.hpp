@@ -10,7 +10,7 @@
 #include "cambium/viewer/recording.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 struct StaticObject;
 
@@ -104,7 +104,7 @@ class WorldRecorder {
   std::vector<RecordedPose> objects_;  ///< the same in every frame
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/viewer/record_world_impl.hpp"

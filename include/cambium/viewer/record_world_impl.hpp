@@ -15,7 +15,7 @@
 #include "cambium/viewer/recording.hpp"
 #include "cambium/world/static_object.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_COLD std::vector<RecordedLane> recorded_lanes(Map const& map) {
   std::vector<RecordedLane> lanes;
@@ -69,4 +69,4 @@ CAMBIUM_COLD std::pair<RecordedAgent, RecordedPose> recorded_object(StaticObject
           {center.x(), center.y(), std::atan2(along.y(), along.x()), 0.0, 0.0, true}};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -10,7 +10,7 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/lanes/signals.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// An agent's colour class in the viewers.
 enum class RecordedAgentKind : std::uint32_t {
@@ -84,7 +84,7 @@ struct Recording {
 /// Throws `Error` unless every frame has a pose for each agent, and the times are finite and strictly ascending.
 void check_recording(Recording const& recording);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/viewer/recording_impl.hpp"

@@ -8,7 +8,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/viewer/recording.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_COLD void check_recording(Recording const& recording) {
   for (std::size_t k = 0; k < recording.frames.size(); ++k) {
@@ -26,4 +26,4 @@ CAMBIUM_COLD void check_recording(Recording const& recording) {
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "cambium/viewer/recording.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What `svg_picture` shows.
 struct SvgOptions {
@@ -26,7 +26,7 @@ struct SvgOptions {
 /// the path and the reason when it cannot be written.
 void write_svg_picture(std::filesystem::path const& path, Recording const& recording, SvgOptions const& options = {});
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/viewer/svg_picture_impl.hpp"

@@ -20,7 +20,7 @@
 #include "cambium/viewer/recording.hpp"
 #include "cambium/viewer/svg_picture.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -272,4 +272,4 @@ CAMBIUM_COLD void write_svg_picture(std::filesystem::path const& path, Recording
   write_file(path, svg_picture(recording, options));
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -16,7 +16,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/routing/route.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 enum class SpecPart { behavior, goal, id };
@@ -106,4 +106,4 @@ struct AgentSpecOf {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -5,7 +5,7 @@
 #include "cambium/world/detail/situation.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The record of the agent at `slot` of `world` once it has driven from `before` to `state`: its lane, its status and
 /// the parts of its goal that it has passed are what a step of the world finds. Its memory stays.
@@ -25,4 +25,4 @@ template <class World>
   return record;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 #include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/observer/observer_model.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Whether an agent takes part in traffic, and if not, why. Only driving agents move and are visible to others.
 enum class AgentStatus : std::uint8_t {
@@ -101,4 +101,4 @@ struct Frame {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

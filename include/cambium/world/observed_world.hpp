@@ -21,7 +21,7 @@
 #include "cambium/world/static_object.hpp"
 #include "cambium/world/traffic_index.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What one agent sees of its world: a view of a few pointers, valid until the world changes. It shows states, shapes,
 /// neighbours, the map and the agent's own route, never the others' intentions; `predict` takes a model of those.
@@ -463,4 +463,4 @@ class ObservedWorld {
   [[no_unique_address]] std::conditional_t<perfect, NoMemory, map::LanePlace> seen_lane_{};
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -10,7 +10,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/box.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Finds agents by their position in the plane, regardless of lanes, for behaviours that look around, such as those of
 /// pedestrians. A grid holds each agent in every cell that its bounding box meets. The cells are hashed into buckets,
@@ -109,4 +109,4 @@ class PlaneIndex {
   std::vector<Entry> entries_;  ///< by bucket, then slot
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -17,7 +17,7 @@
 #include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A planner's assumptions: the behaviours of its own agent and of all others, from one behaviour set.
 template <class Set>
@@ -108,4 +108,4 @@ template <class Set, class World>
   return Predicted(world.shared_map(), std::move(assumed), std::move(seen));
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

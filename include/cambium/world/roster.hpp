@@ -16,7 +16,7 @@
 #include "cambium/world/static_object.hpp"
 #include "cambium/world/traffic_index.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A free corridor as the user gave it, and a copy whose lane coordinates follow those of the map.
 struct FreeRoad {
@@ -133,7 +133,7 @@ struct Roster : RosterBase {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/world/roster_impl.hpp"

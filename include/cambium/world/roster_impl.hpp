@@ -10,7 +10,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/world/roster.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_COLD RosterBase::RosterBase() = default;
 CAMBIUM_COLD RosterBase::RosterBase(RosterBase const&) = default;
@@ -60,4 +60,4 @@ CAMBIUM_COLD void RosterBase::assume_objects(RosterBase const& other, IdVector<s
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

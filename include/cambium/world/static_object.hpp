@@ -5,7 +5,7 @@
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/polygon.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// An obstacle that never moves. Behaviours see it as a neighbour of speed 0; evaluators report contact with it.
 struct StaticObject {
@@ -13,4 +13,4 @@ struct StaticObject {
   geometry::Polygon outline;     ///< map frame
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -6,7 +6,7 @@
 
 #include "cambium/core/ids.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Why a step failed, as a whole or for one agent.
 enum class StepProblem : std::uint8_t {
@@ -43,4 +43,4 @@ struct [[nodiscard("a step that is not valid may not have moved the world: check
   return number < std::size(clauses) ? clauses[number] : "unknown problem";
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -17,7 +17,7 @@
 #include "cambium/world/detail/traffic_walk.hpp"
 #include "cambium/world/traffic_query.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A lane's range of the lane coordinate [m].
 struct LaneStretch {
@@ -437,4 +437,4 @@ class TrafficIndex {
   Reach reach_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "cambium/behavior/view.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A road user on a lane: the `position` of its reference point in the map-wide lane coordinate (see
 /// `Lane::index_begin`), its extent in front of and behind that point [m] and its speed along the lane [m/s]. `slot`
@@ -52,4 +52,4 @@ struct SightedQuery : TrafficQuery {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

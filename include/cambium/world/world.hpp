@@ -33,7 +33,7 @@
 #include "cambium/world/step_result.hpp"
 #include "cambium/world/traffic_index.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How a world begins.
 struct WorldOptions {
@@ -473,4 +473,4 @@ inline constexpr bool is_world = requires {
 };
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

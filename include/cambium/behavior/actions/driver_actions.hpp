@@ -11,7 +11,7 @@
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
@@ -108,4 +108,4 @@ struct DriverActions {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

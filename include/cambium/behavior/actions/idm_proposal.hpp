@@ -16,7 +16,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/macros.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A rule of lane changes for `ChangeLanes` that somebody else decides: to the lane corridor `towards`, as soon as that
 /// is safe and the lane stays beside until the change has ended. Until then it comes to the speed of a slower
@@ -150,4 +150,4 @@ struct BasicProposal {
 using IdmProposal = BasicProposal<Idm, Bends, Signals, Pedestrians, Conflicts>;
 static_assert(BehaviorModel<IdmProposal>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -23,7 +23,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A manoeuvre of `MacroActions`.
 struct MacroAction {
@@ -286,4 +286,4 @@ struct BasicMacroActions {
 using MacroActions = BasicMacroActions<Idm>;
 static_assert(BehaviorModel<MacroActions>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

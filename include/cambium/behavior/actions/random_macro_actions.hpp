@@ -9,7 +9,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Chooses one of the available macro actions at random every `interval`, with equal probability. The random numbers
 /// are the agent's own: the same in every run, copy and thread.
@@ -68,4 +68,4 @@ struct RandomMacroActions {
 };
 static_assert(BehaviorModel<RandomMacroActions>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

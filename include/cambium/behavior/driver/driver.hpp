@@ -12,7 +12,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 /// The lateral part of a driver whose limits are `Limits`, see `Driver`.
@@ -156,4 +156,4 @@ struct Driver {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

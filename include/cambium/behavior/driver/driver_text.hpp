@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 struct Idm;
 struct Acc;
@@ -117,4 +117,4 @@ template <class... Parts>
 inline constexpr char const* memory_name = JoinedName<DriverName<Parts...>, MemoryWord>::text.data();
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

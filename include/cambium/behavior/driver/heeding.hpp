@@ -12,7 +12,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -236,4 +236,4 @@ struct Heeding : detail::Slotted<Heeds>... {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

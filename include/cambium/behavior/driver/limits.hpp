@@ -13,7 +13,7 @@
 #include "cambium/core/constants.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A car-following law: a described struct of parameters with
 /// - the six that every driver has: desired speed [m/s], time headway [s], minimum gap [m], maximum acceleration and
@@ -196,4 +196,4 @@ class Limits {
   LongitudinalMotion<double> bound_{infinite, infinite};
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -5,7 +5,7 @@
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Brakes in time for bends: comfortably, and harder only if that no longer suffices.
 struct Bends {
@@ -44,4 +44,4 @@ struct BendsFor : Bends {
   constexpr BendsFor(Bends const& bends) : Bends(bends) {}
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

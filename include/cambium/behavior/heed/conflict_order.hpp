@@ -14,7 +14,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/lanes/signals.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -242,4 +242,4 @@ template <class View>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -13,7 +13,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Crosses junctions by the rules of the road. The map knows where two ways conflict (`map::Conflict`), and which
 /// conflicts form a section that a vehicle passes as a whole, for nobody can stand between them:
@@ -566,4 +566,4 @@ struct Conflicts {
     return front - end < view.shape().length() + own.minimum_gap;
   }
 };
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

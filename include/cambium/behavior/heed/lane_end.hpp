@@ -6,7 +6,7 @@
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Brakes where the lane ends, as a car-following law brakes for a standing vehicle.
 struct LaneEnd {
@@ -40,4 +40,4 @@ struct LaneEnd {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 #include "cambium/behavior/law/stepping_out.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Brakes for agents on no lane, such as pedestrians, who will step into its way.
 struct Pedestrians {
@@ -40,4 +40,4 @@ struct Pedestrians {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -9,7 +9,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/map/lanes/signals.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Stops at red lights and stop signs; at yellow lights if it can stop by `safe_deceleration`.
 struct Signals {
@@ -129,4 +129,4 @@ struct Signals {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -5,7 +5,7 @@
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Desires no more than the speed limit, and slows down in time for a lower one ahead.
 struct SpeedLimit {
@@ -48,4 +48,4 @@ struct SpeedLimit {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

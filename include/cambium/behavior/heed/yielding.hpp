@@ -9,7 +9,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Sometimes lets others in. While it yields, the driver follows, besides its own leader, the next vehicle ahead in
 /// each neighbouring lane that soon ends or joins its own, if comfortable braking suffices. Periods of yielding and
@@ -103,4 +103,4 @@ struct Yielding {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

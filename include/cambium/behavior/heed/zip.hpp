@@ -10,7 +10,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Zip merge: the driver keeps its lane up to the merge and there lets one vehicle of the other lane in between itself
 /// and its leader. This is the alternating order of the German StVO, section 7 (4):
@@ -195,4 +195,4 @@ struct Zip {
     return is_impatient(*other) ? std::nullopt : other;
   }
 };
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

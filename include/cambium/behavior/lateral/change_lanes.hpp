@@ -19,7 +19,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 /// How a driver who changes lanes looks along its own lane and those beside: whoever merges there counts, even for one
@@ -537,4 +537,4 @@ struct ChangeLanes {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 #include "cambium/behavior/law/lane_option.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A condition that the target lane of a lane change must meet: a described struct with
 ///   `template <class View> bool operator()(View const& view, LaneOption const& option) const`.
@@ -114,4 +114,4 @@ struct SpeedLimitAtLeast {
 };
 static_assert(CorridorFilter<SpeedLimitAtLeast>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 #include "cambium/behavior/lateral/corridor_filters.hpp"
 #include "cambium/behavior/lateral/change_lanes.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Changes to the lane with the most free space ahead (BARK's rule-based lane change), if that is at least `advantage`
 /// more than in the own lane, `space` is free and the gap is safe. Free space counts up to `horizon`. Where its lane
@@ -72,4 +72,4 @@ struct FreeSpaceRule {
     return target;
   }
 };
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -15,7 +15,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/macros.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Keeps its lane, and its lateral offset there. As long as all agents drive in the middle of their lanes, the next
 /// road user in the lane is in the way, whatever part of the lane it occupies. The driver passes a slower agent that
@@ -305,4 +305,4 @@ struct KeepLane {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -16,7 +16,7 @@
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/shape.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Point at `distance` [m] on the course from `start` that ends on the line and parallel to it after `length` [m] with
 /// the least squared jerk: a quintic polynomial (Takahashi, Hongo, Ninomiya, Sugimoto 1989; Werling, Ziegler, Kammel,
@@ -372,4 +372,4 @@ template <class View>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 #include "cambium/behavior/lateral/corridor_filters.hpp"
 #include "cambium/core/macros.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Accelerations [m/s^2] of the driver and both followers, now and after a lane change.
 struct MobilSituation {
@@ -184,4 +184,4 @@ struct MobilRule {
   static constexpr double free_road = std::numeric_limits<double>::infinity();
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

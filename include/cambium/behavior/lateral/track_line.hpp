@@ -12,7 +12,7 @@
 #include "cambium/execution/steering.hpp"
 #include "cambium/geometry/angle.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Pose of a front axle relative to a line.
 struct FrontAxle {
@@ -107,4 +107,4 @@ struct TrackLine {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

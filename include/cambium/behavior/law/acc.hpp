@@ -10,7 +10,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Acceleration [m/s^2] that just avoids a collision if the leader keeps its acceleration (constant-acceleration
 /// heuristic; Kesting, Treiber, Helbing 2010, eq. 2.3). The leader's acceleration counts up to `most` [m/s^2]; an
@@ -136,4 +136,4 @@ inline double Acc::acceleration(double speed, double desired, Constraint const& 
   return at(speed, desired)(leader);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

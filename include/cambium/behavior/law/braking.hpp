@@ -10,7 +10,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Whether a vehicle of `speed` [m/s] can stop within `distance` [m] by braking with `deceleration` [m/s^2]. A stopped
 /// vehicle always can.
@@ -139,4 +139,4 @@ struct BendsAhead {
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -10,7 +10,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/shape.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Something ahead to which a car-following law responds: a road user, the end of the lane, the gap to open for a
 /// vehicle that merges. It moves along the lane or stands.
@@ -90,4 +90,4 @@ template <class Law, class View>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Lateral position of a vehicle that converges to a line, as a function of the distance along the line.
 template <class Scalar>
@@ -167,4 +167,4 @@ template <class View>
   return detail::plan_to(view, next, dt);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -6,7 +6,7 @@
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Motion over `dt` [s] behind a leader of constant speed, for any law `acceleration(speed, Constraint)`: Heun's scheme
 /// of order 2 in equal parts of at most 0.1 s. A vehicle whose speed reaches 0 stops.
@@ -31,4 +31,4 @@ template <class Law>
   return motion;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Share of the way to a merge that a follower adds to its gap, so that the gap opens bit by bit. (With half of the
 /// way, gaps opened too late: 172 of 20 000 dense merges collided.)
@@ -17,4 +17,4 @@ inline constexpr double opening_share = 0.2;
   return std::min(gap + opening_share * to_merge, std::max(gap, to_merge));
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -13,7 +13,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A parameter struct with the fields of the Intelligent Driver Model, which the functions below read.
 template <class P>
@@ -364,4 +364,4 @@ inline double Idm::acceleration(double speed, double desired, Constraint const& 
   return at(speed, desired)(leader);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -9,7 +9,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The Improved Intelligent Driver Model's formula (Treiber, Kesting 2013, section 11.3.7) with all terms that depend
 /// on the parameters alone.
@@ -93,4 +93,4 @@ struct ImprovedIdm {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

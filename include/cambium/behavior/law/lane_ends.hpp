@@ -6,7 +6,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Corridor position [m] by which a vehicle on corridor `number`, in its piece `piece`, must have left its lane because
 /// the lane ends or leaves the route, or should have left it because the lane begins to merge; infinite if it may stay.
@@ -136,4 +136,4 @@ template <class View>
   return left != 0 ? left : detail::lanes_until(road, number, piece, false, reaches);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -6,7 +6,7 @@
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/view.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 /// What is assumed of the drivers of long vehicles, and from which length [m].
@@ -28,4 +28,4 @@ struct LaneOption {
   std::optional<RoadUser> front, rear;  ///< the new leader and the new follower
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

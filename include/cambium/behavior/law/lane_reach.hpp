@@ -13,7 +13,7 @@
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -130,4 +130,4 @@ template <class View>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -2,7 +2,7 @@
 
 #include <complex>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A car-following law linearised at steady following: derivatives of the follower's acceleration.
 struct LinearFollowing {
@@ -36,4 +36,4 @@ template <class Law>
           (acceleration(speed, gap, speed + h) - acceleration(speed, gap, speed - h)) / (2 * h)};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

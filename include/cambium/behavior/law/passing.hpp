@@ -11,7 +11,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/frenet.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Point at `way` [m] on the course from `start` that approaches the line critically damped: x'' = -2 x' / l - x / l^2
 /// with `length` l [m]. The course depends on the place alone, so a vehicle that restarts it in each step stays on it.
@@ -158,4 +158,4 @@ template <class View>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How fast a driver's acceleration may change, and what it was over the last step. The default bounds nothing.
 struct JerkBound {
@@ -130,4 +130,4 @@ struct RampStart {
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -9,7 +9,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/frenet.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -71,4 +71,4 @@ CAMBIUM_NOINLINE [[nodiscard]] double distance_before_crossing(View const& view,
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -6,7 +6,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Follows its lane with constant acceleration (0: constant speed) and ignores all others. It first ends the motion
 /// across the lane that its heading shows, such as a lane change. It stops rather than reverses.
@@ -44,4 +44,4 @@ struct ConstantAcceleration {
 };
 static_assert(BehaviorModel<ConstantAcceleration>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

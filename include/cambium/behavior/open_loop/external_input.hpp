@@ -8,7 +8,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/dynamics/integration.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Integration scheme of an input.
 enum class InputScheme : std::uint8_t { rk4, euler };
@@ -74,4 +74,4 @@ struct ExternalInput {
 };
 static_assert(BehaviorModel<ExternalInput>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

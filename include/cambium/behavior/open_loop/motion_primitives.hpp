@@ -13,7 +13,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// An input of `MotionPrimitives`.
 struct MotionPrimitive {
@@ -96,4 +96,4 @@ struct MotionPrimitives {
 };
 static_assert(BehaviorModel<MotionPrimitives>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -13,7 +13,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Replays a recorded trajectory, which all copies share. A step ends at the recorded state of that time, or between
 /// two of them by linear interpolation (of the heading along the shorter arc). The agent enters traffic at the first
@@ -86,4 +86,4 @@ struct StaticTrajectory {
 };
 static_assert(BehaviorModel<StaticTrajectory>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

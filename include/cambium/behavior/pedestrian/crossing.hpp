@@ -10,7 +10,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// When a pedestrian crosses the lanes of vehicles. It accepts a gap that is longer than the time to cross plus
 /// `time_margin`, as in the Highway Capacity Manual 2000 (eq. 18-17), where start-up and clearance take 3 s together
@@ -127,4 +127,4 @@ template <class View>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

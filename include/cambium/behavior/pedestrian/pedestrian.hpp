@@ -18,7 +18,7 @@
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/polygon.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A pedestrian that walks along its road corridor by social forces (see `SocialForceParameters`). It follows its way
 /// at its desired speed, keeps its distance from others, from the way's borders and from static objects, and crosses
@@ -217,4 +217,4 @@ struct Pedestrian {
 };
 static_assert(BehaviorModel<Pedestrian>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

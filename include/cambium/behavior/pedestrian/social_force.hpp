@@ -7,7 +7,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/geometry/angle.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A vector in the plane, over any scalar.
 template <class Scalar>
@@ -144,4 +144,4 @@ template <class Scalar>
   return speed > highest ? (highest / speed) * next : next;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

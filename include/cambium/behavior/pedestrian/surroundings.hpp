@@ -11,7 +11,7 @@
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/polygon.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// A line that a pedestrian must not pass: at most `room` [m] in the direction of the unit vector `across`. Below 0 it
 /// has passed the line already, and goes no farther.
@@ -139,4 +139,4 @@ struct Surroundings {
   }
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

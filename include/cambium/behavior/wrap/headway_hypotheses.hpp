@@ -7,7 +7,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/described.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A behaviour with something unknown about its driver, which a planner learns by observation, see `Mcts`:
 /// - `hypotheses()`: the number of hypotheses about it, 1 to 8;
@@ -92,4 +92,4 @@ struct HeadwayHypotheses {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -19,7 +19,7 @@
 #include "cambium/core/random.hpp"
 #include "cambium/execution/interpolate.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Any behaviour, driven by a human: late, on wrong estimates, at times inattentive (the Human Driver Model of Treiber,
 /// Kesting, Helbing 2006, "Delays, inaccuracies and anticipation in microscopic traffic models", Physica A 360; here
@@ -282,4 +282,4 @@ struct HumanDriver {
 };
 static_assert(BehaviorModel<HumanDriver<IdmClassic>>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

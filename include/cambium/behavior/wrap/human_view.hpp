@@ -10,7 +10,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/constants.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A driver's estimation errors at one moment, and how far ahead it extrapolates what it sees.
 struct HumanEstimate {
@@ -157,4 +157,4 @@ class HumanView : public View {
   map::LanePlace place_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

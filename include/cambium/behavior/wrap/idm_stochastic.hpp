@@ -9,7 +9,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A driver whose law has parameters drawn from distributions, once for each agent or anew in every step. Draws are
 /// clamped to the parameters' valid ranges. Reproducible: all random numbers come from the agent's own stream. With
@@ -91,4 +91,4 @@ struct BasicIdmStochastic {
 using IdmStochastic = BasicIdmStochastic<Uniform, IdmClassic>;
 static_assert(BehaviorModel<IdmStochastic>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -5,7 +5,7 @@
 
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Assumptions of Responsibility-Sensitive Safety (RSS) about road users: a response time, bounds of their
 /// accelerations until then, and their braking afterwards. Defaults are the example values in the documentation of
@@ -146,4 +146,4 @@ struct RssSituation {
   return response;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -15,7 +15,7 @@
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/geometry/shape.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Any behaviour, overridden in dangerous situations by Responsibility-Sensitive Safety (see rss.hpp). In each step
 /// - the nominal behaviour plans;
@@ -310,4 +310,4 @@ struct RssConformant {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
 #include "cambium/behavior/lateral/lane_change.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Brakes to a standstill and steers to the middle of its lane.
 struct Safety {
@@ -39,4 +39,4 @@ struct Safety {
 };
 static_assert(BehaviorModel<Safety>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -9,7 +9,7 @@
 
 #include "cambium/core/markup.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// A row of a box plot.
 struct BoxPlotRow {
@@ -126,4 +126,4 @@ struct PlotAxis {
   return svg + "</svg>";
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

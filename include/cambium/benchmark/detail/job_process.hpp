@@ -25,7 +25,7 @@
 #include "cambium/benchmark/executor.hpp"
 #include "cambium/core/error.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// A forked copy of this process that runs jobs, so that a job that crashes or never ends costs nothing else. It ends
 /// with this process; on systems other than Linux, once its job has ended.
@@ -193,4 +193,4 @@ class JobProcess {
   std::string bytes_;  ///< of the answer, so far
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

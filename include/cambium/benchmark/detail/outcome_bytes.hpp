@@ -9,7 +9,7 @@
 #include "cambium/core/type_info.hpp"
 
 /// Outcomes of jobs as bytes, for messages between processes of one program.
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 [[nodiscard]] inline std::string outcome_bytes(JobOutcome const& outcome) {
   return binary_of(type_info<JobOutcome>(), &outcome);
@@ -26,4 +26,4 @@ namespace cambium::detail {
   return outcome;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -15,7 +15,7 @@
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Compares what the planner of a run expects of the others with what they then do. Once a second it is asked about
 /// those within 50 m: where they will be after 1, 3 and 5 s, and if it thinks of several ways, how likely each is. What
@@ -173,4 +173,4 @@ class PredictionJudge {
   std::size_t weighed_ = 0;
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Style sheet of the report page; light and dark differ in these variables only.
 inline constexpr std::string_view report_style = R"css(
@@ -236,4 +236,4 @@ for (const [key, value] of new URLSearchParams(location.hash.slice(1)))
 update();
 )js";
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -11,7 +11,7 @@
 #include "cambium/benchmark/result_group.hpp"
 
 /// What all formats of a report share.
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// `value` with that many places after the point.
 [[nodiscard]] inline std::string fixed_text(double value, int decimals) {
@@ -53,4 +53,4 @@ namespace cambium::detail {
   return sets;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

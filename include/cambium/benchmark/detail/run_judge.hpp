@@ -39,7 +39,7 @@
 #include "cambium/scenario/scenario_set.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// A rule that every run is judged by, and the field of the result that says whether it was broken.
 struct RunRule {
@@ -359,4 +359,4 @@ class RunJudge {
   Metrics metrics_{};
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

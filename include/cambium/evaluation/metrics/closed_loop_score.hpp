@@ -15,7 +15,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How well an agent drove, from 0 to 1: the closed-loop score of nuPlan (Karnchanachari et al. 2024, "Towards
 /// learning-based planning: the nuPlan benchmark for real-world autonomous driving", with the thresholds of its
@@ -180,4 +180,4 @@ struct ClosedLoopScore {
   std::deque<Against> against_;     ///< of the last second
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

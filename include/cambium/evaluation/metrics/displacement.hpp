@@ -12,7 +12,7 @@
 #include "cambium/core/state.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How far an agent is from its recording: `mean` and `last` are the average and final displacement errors (ADE, FDE)
 /// of trajectory prediction [m], over the frames within the time of the recording. 0 without any.
@@ -45,4 +45,4 @@ struct Displacement {
   std::size_t frames_ = 0;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

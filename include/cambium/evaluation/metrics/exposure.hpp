@@ -9,7 +9,7 @@
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How long an agent is exposed to a collision: the time for which its time to collision (`TimeToCollision`) is below
 /// `threshold` (time exposed TTC, TET), and by how much, summed over time (time integrated TTC, TIT; Minderhoud and
@@ -45,4 +45,4 @@ struct Exposure {
   double exposed_ = 0.0, integrated_ = 0.0, least_ = std::numeric_limits<double>::infinity();
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -10,7 +10,7 @@
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A metric of one agent's run: what an evaluator cannot say, because it needs memory. `observe` is called with the
 /// world before the first step (`dt` 0) and after each step of `dt` [s]; `value` may be asked at any time. A metric
@@ -89,4 +89,4 @@ using Times = Over<E, Fold::times>;
 template <class E>
 using LongestTime = Over<E, Fold::longest>;
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

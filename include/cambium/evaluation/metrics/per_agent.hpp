@@ -6,7 +6,7 @@
 
 #include "cambium/core/ids.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The same metric of several agents: of those given, or of all that are in the world or come into it. Keeps the values
 /// of those that have left.
@@ -42,4 +42,4 @@ class PerAgent {
   bool takes_all_ = false;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

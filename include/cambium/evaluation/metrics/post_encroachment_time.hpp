@@ -15,7 +15,7 @@
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Post-encroachment time [s]: the least time between one of two road users leaving a place and the other one reaching
 /// it, where their ways cross or meet (Allen, Shin, Cooper 1978). Places are those that bodies cover at the steps, and
@@ -108,4 +108,4 @@ class PostEncroachmentTime {
   std::vector<Footprint> others_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

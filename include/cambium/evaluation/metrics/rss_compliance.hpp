@@ -10,7 +10,7 @@
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Counts the steps in which an agent does not respond to danger as Responsibility-Sensitive Safety requires: it has to
 /// brake by `RssParameters::minimum_deceleration`, and brakes less while it is not standing. See `RssConformant`.
@@ -62,4 +62,4 @@ struct RssCompliance {
   int steps_ = 0, violations_ = 0, dangers_ = 0;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

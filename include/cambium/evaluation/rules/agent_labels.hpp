@@ -12,7 +12,7 @@
 // Labels of one agent. Those that other headers bring: `Collision`, `OffRoad`, and by `Exceeds` every evaluator that
 // returns a number.
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The same at every step.
 struct Constant {
@@ -172,4 +172,4 @@ struct BeyondPoint {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 
 #include "cambium/core/error.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A formula is not what it should be: its text cannot be parsed, a label is unknown, or it is too complex to monitor.
 struct FormulaError : Error {
@@ -134,7 +134,7 @@ class Formula {
   return Formula::of(Formula::Kind::weak_until, f, g);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/evaluation/rules/formula_impl.hpp"

@@ -7,7 +7,7 @@
 
 #include "cambium/evaluation/rules/formula.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What the steps so far say about a formula.
 enum class RuleVerdict : std::uint8_t {
@@ -65,7 +65,7 @@ class FormulaAutomaton {
   std::vector<RuleVerdict> verdicts_, at_end_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/evaluation/rules/formula_automaton_impl.hpp"

@@ -12,7 +12,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/evaluation/rules/formula_automaton.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -232,4 +232,4 @@ CAMBIUM_COLD FormulaAutomaton::FormulaAutomaton(Formula const& formula) : labels
                                            : RuleVerdict::open);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

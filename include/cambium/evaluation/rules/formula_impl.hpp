@@ -13,7 +13,7 @@
 #include "cambium/core/nearest_names.hpp"
 #include "cambium/evaluation/rules/formula.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -236,4 +236,4 @@ CAMBIUM_COLD std::string to_string(Formula const& formula) {
   return parts.back().text;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

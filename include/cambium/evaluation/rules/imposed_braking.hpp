@@ -14,7 +14,7 @@
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -140,4 +140,4 @@ struct ImposedBraking {
   double braked_ = -std::numeric_limits<double>::infinity();   ///< when it last braked for nothing [s]
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

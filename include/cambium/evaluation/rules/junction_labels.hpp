@@ -19,7 +19,7 @@
 
 // Labels about junctions: signs, lights, and the right of way.
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Whether the next line of a signal is at most `distance` ahead of an agent's front end: of a traffic light, of one
 /// that is red, or of a stop sign. O(signals of its lane corridor).
@@ -211,4 +211,4 @@ struct InConflict {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

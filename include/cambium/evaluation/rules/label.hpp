@@ -5,7 +5,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A label of one agent: an evaluator that returns a bool, as `Collision` and `OffRoad` do.
 template <class L, class World>
@@ -58,4 +58,4 @@ struct OfOther {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 
 // Labels of the agent that is judged and another one. See `OfOther` for labels of the other alone.
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Whether the two agents are closer than `distance`, box to box. O(1).
 struct AgentNear {
@@ -183,4 +183,4 @@ struct ZipPartner {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -9,7 +9,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/corridor/lane_place.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -75,4 +75,4 @@ template <class World>
   return std::nullopt;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -20,7 +20,7 @@
 #include "cambium/evaluation/rules/formula_automaton.hpp"
 #include "cambium/evaluation/rules/label.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A label under the name by which formulas call it; that of its struct where none is given. `Labels` is a `OneOf`.
 template <class Labels>
@@ -268,4 +268,4 @@ class RuleMonitor {
   std::vector<Violation> located_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

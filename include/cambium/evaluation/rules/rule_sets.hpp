@@ -18,7 +18,7 @@
 #include "cambium/evaluation/rules/safe_distance.hpp"
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// All labels that cambium brings, and the user's `Own` ones: the argument of rules, rule sets and monitors.
 template <class... Own>
@@ -176,4 +176,4 @@ template <class Labels = RuleLabels<>>
   };
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Smallest distance [m], bumper to bumper, at which a vehicle cannot run into the one ahead. The front one brakes at
 /// once with `front_deceleration`, the rear one after `reaction_time` [s] with `rear_deceleration`, both positive
@@ -72,4 +72,4 @@ struct SafeDistance {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

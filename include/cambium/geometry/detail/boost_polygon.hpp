@@ -26,7 +26,7 @@
 #pragma GCC diagnostic pop
 #endif
 
-namespace cambium::geometry::detail {
+namespace cambium::inline v0_1::geometry::detail {
 
 using BoostPoint = boost::geometry::model::d2::point_xy<double>;
 using BoostPolygon = boost::geometry::model::polygon<BoostPoint, false, true>;  // counter-clockwise, closed
@@ -47,4 +47,4 @@ void add_ring(Ring const& ring, std::vector<Polygon>& polygons) {
   if (std::abs(twice_area(points)) > 2e-4) polygons.emplace_back(points, "area");
 }
 
-}  // namespace cambium::geometry::detail
+}  // namespace cambium::inline v0_1::geometry::detail

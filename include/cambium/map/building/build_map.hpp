@@ -9,7 +9,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place: links that lead
 /// nowhere, that only one side knows, or that seem to be missing (see `MapOptions::infer_links`), joined lanes that do
@@ -30,7 +30,7 @@ namespace cambium::map {
                                                           std::string file, std::vector<Diagnostic>& diagnostics,
                                                           std::function<void(Map::Parts&)> const& link);
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/building/build_map_impl.hpp"

@@ -10,7 +10,7 @@
 #include "cambium/map/building/detail/split_roads.hpp"
 #include "cambium/map/detail/require_buildable.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 CAMBIUM_COLD std::shared_ptr<Map const> build_map(OpenDriveDocument document, MapOptions const& options,
                                                   std::string file, std::vector<Diagnostic>& diagnostics) {
@@ -31,4 +31,4 @@ CAMBIUM_COLD std::shared_ptr<Map const> build_linked_map(OpenDriveDocument const
   return build.finish([](Lane const& lane, double s) { return lane.path.pose(s); });
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -8,7 +8,7 @@
 #include "cambium/map/building/road_plan.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// The centre line of a lane from a table, and what else the table says about each of its points.
 struct CenterLine {
@@ -39,7 +39,7 @@ struct CenterLine {
 /// `lane_along`. `id`: the road's. Throws `MapError` as that.
 [[nodiscard]] RoadPlan lane_along(CenterLine const& line, double lane_width = 3.5, std::string const& id = {});
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/building/center_line_csv_impl.hpp"

@@ -18,7 +18,7 @@
 #include "cambium/map/detail/read_map_file.hpp"
 #include "cambium/map/road/lane_type.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -183,4 +183,4 @@ CAMBIUM_COLD RoadPlan lane_along(CenterLine const& line, double lane_width, std:
   return plan;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -6,7 +6,7 @@
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/road.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// That one meets lane `next_lane` of `next_road` at its end `next_end` when leaving `road` at its end `end` in lane
 /// `lane`: as the file says, whatever way lanes are driven.
@@ -29,7 +29,7 @@ struct LaneAdjacency {
 [[nodiscard]] std::vector<LaneAdjacency> lane_adjacency(OpenDriveDocument const& document,
                                                         std::vector<Road> const& roads);
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/building/lane_adjacency_impl.hpp"

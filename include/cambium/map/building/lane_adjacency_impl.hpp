@@ -6,7 +6,7 @@
 #include "cambium/map/building/detail/road_links.hpp"
 #include "cambium/map/building/lane_adjacency.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -58,4 +58,4 @@ CAMBIUM_COLD std::vector<LaneAdjacency> lane_adjacency(OpenDriveDocument const& 
   return detail::AdjacencyList(detail::RoadLinks(document, roads)).list();
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -6,7 +6,7 @@
 #include "cambium/map/building/make_roads.hpp"
 #include "cambium/map/detail/id_places.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 CAMBIUM_COLD std::vector<Road> make_roads(OpenDriveDocument const& document) {
   auto const junctions = detail::places_of(document.junctions);
@@ -20,4 +20,4 @@ CAMBIUM_COLD std::vector<Road> make_roads(OpenDriveDocument const& document) {
   return roads;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -13,7 +13,7 @@
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A way through a junction to be made, see `MapBuilder::add_turn`.
 struct TurnPlan {
@@ -98,11 +98,11 @@ class MapBuilder {
   detail::DocumentIndex index_;
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 using map::MapBuilder;
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/building/map_builder_impl.hpp"

@@ -15,7 +15,7 @@
 #include "cambium/map/building/map_builder.hpp"
 #include "cambium/map/opendrive/check.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 CAMBIUM_COLD MapBuilder::MapBuilder(std::string name) {
   document_.header.rev_major = 1;
@@ -160,4 +160,4 @@ CAMBIUM_COLD opendrive::RoadElement const& MapBuilder::checked(RoadEnd const& en
   return road(end.road);
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -9,7 +9,7 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A road with one lane, -1, along the points of its centre line (`curve_through`: it passes through them without
 /// kinks). `widths`: the distances from there to the lane's borders [m], one for all points or one a point, smooth
@@ -29,7 +29,7 @@ namespace cambium::map {
 /// `curve_through`, with the border counted from 0, and where a border is not to the right of the one before.
 [[nodiscard]] RoadPlan lanes_between(std::span<std::vector<geometry::Point> const> borders, std::string id = {});
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/building/polyline_roads_impl.hpp"

@@ -14,7 +14,7 @@
 
 /// Roads from points, for planners that bring lanes of their own.
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 /// A road to be made of points, in messages.
@@ -99,4 +99,4 @@ CAMBIUM_COLD RoadPlan lanes_between(std::span<std::vector<geometry::Point> const
   return plan;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

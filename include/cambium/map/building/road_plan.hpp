@@ -10,7 +10,7 @@
 #include "cambium/map/road/lane_type.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A lane of one section.
 struct LanePlan {
@@ -73,4 +73,4 @@ struct RoadEnd {
   return {s, from, 0.0, 3.0 * rise / (length * length), -2.0 * rise / (length * length * length)};
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

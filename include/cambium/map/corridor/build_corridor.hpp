@@ -10,7 +10,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/routing/route.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// The way straight on from `from`: at forks the successor that turns least (within 50 m), of equal ones the smallest
 /// id. Ends at a dead end, where a lane would come again, or with the lane that makes it `max_length` [m] long. Throws
@@ -70,4 +70,4 @@ namespace cambium::map {
   return map.queries().road_corridor(map, roads, direction);
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

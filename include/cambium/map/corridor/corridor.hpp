@@ -12,7 +12,7 @@
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A lane's stretch of a lane corridor.
 struct CorridorPiece {
@@ -290,4 +290,4 @@ struct RoadCorridor {
   }
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

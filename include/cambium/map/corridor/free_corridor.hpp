@@ -8,7 +8,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/road/lane_type.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Properties of a free corridor.
 struct FreeCorridorOptions {
@@ -37,4 +37,4 @@ struct FreeCorridorOptions {
   return {.width = 2.0 * corridor.widths.front().left, .type = corridor.pieces.front().type, .view = road.view};
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

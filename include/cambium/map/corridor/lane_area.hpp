@@ -15,7 +15,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -171,4 +171,4 @@ inline constexpr PathStretch whole_path{0.0, std::numeric_limits<double>::infini
   return detail::strip_polygons(detail::strip_sections(corridor.center, corridor.widths, stretch, growth));
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

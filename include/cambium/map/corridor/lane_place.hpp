@@ -12,7 +12,7 @@
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Where a vehicle is on a road corridor. `corridor` and `piece` number the lane corridor and its lane.
 struct LanePlace {
@@ -104,4 +104,4 @@ namespace detail {
   return detail::nearest_corridor(road, p, nullptr);
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -7,7 +7,7 @@
 #include "cambium/map/corridor/lane_area.hpp"
 #include "cambium/map/corridor/road_area.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 CAMBIUM_COLD std::vector<geometry::Area> area_of(RoadCorridor const& road, double growth) {
   std::vector<geometry::Polygon> polygons;
@@ -16,4 +16,4 @@ CAMBIUM_COLD std::vector<geometry::Area> area_of(RoadCorridor const& road, doubl
   return geometry::union_of(polygons);
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -6,7 +6,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Where the traffic of a lane stops, from border to border of the lane (see `CorridorSignal`).
 struct StopLine {
@@ -18,4 +18,4 @@ struct StopLine {
 /// The stop lines of a map, where lane corridors have them, each once, in the order of the lanes. O(n^2) for n signals.
 [[nodiscard]] inline std::vector<StopLine> stop_lines(Map const& map) { return map.queries().stop_lines(map); }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

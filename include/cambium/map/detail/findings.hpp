@@ -11,7 +11,7 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/map/opendrive/reading_limits.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The findings about a file: its reader, the checks and the map building add to one list.
 struct Findings {
@@ -48,4 +48,4 @@ struct Findings {
   return {};
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

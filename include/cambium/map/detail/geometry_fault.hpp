@@ -5,7 +5,7 @@
 
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Why a geometry is unusable for driving or computing; null where nothing is wrong. Length 0 is no fault.
 [[nodiscard]] inline char const* fault_of(Geometry const& g) {
@@ -26,4 +26,4 @@ namespace cambium::map::detail {
   return nullptr;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

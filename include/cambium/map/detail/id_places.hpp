@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Indices of a document's elements by their ids. The ids must outlive it.
 using IdPlaces = std::unordered_map<std::string_view, std::size_t>;
@@ -17,4 +17,4 @@ template <class Element>
   return places;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -16,7 +16,7 @@
 #include "cambium/map/opendrive/lanes.hpp"
 #include "cambium/map/road/cubic.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Moves records to a section that starts `shift` [m] later, and drops those that end before it.
 template <class Record>
@@ -62,4 +62,4 @@ inline void move_records(opendrive::LaneElement& lane, double shift) {
   move_start(lane.rest.elements, shift);
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -13,7 +13,7 @@
 #include "cambium/map/lanes/lane_network.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// See `check_lane_network`.
 class NetworkCheck {
@@ -130,4 +130,4 @@ class NetworkCheck {
   std::vector<NetworkFinding> findings_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

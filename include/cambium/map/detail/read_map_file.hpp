@@ -7,7 +7,7 @@
 #include "cambium/core/read_file.hpp"
 #include "cambium/map/opendrive/reading_limits.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// `expected` says what to give: "give an OpenDRIVE file (.xodr)".
 [[nodiscard]] inline FileKind map_file(std::string const& expected = {}) {
@@ -24,4 +24,4 @@ inline void require_readable(std::size_t bytes, std::string const& name) {
   return read_file<MapError>(path, map_file(expected));
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -14,7 +14,7 @@
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Whether an offset of a header is finite and within the range of coordinates.
 [[nodiscard]] inline bool is_bearable(opendrive::HeaderOffset const& offset) {
@@ -104,4 +104,4 @@ class RequireBuildable {
   std::string where_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

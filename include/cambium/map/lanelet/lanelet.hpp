@@ -12,7 +12,7 @@
 
 /// Lanelets: the form in which Lanelet2 and CommonRoad describe roads. A lanelet is a piece of one lane between two
 /// polylines; what follows it and what lies beside it is said by ids.
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A sign or light for the traffic of a lanelet.
 struct LaneletSignal {
@@ -42,4 +42,4 @@ struct Lanelet {
   friend bool operator==(Lanelet const&, Lanelet const&) = default;
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

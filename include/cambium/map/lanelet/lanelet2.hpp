@@ -14,7 +14,7 @@
 #error "cambium::compiled has no Lanelet2 reader because CMake did not find pugixml: install it (libpugixml-dev)"
 #endif
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// The lanelets of a Lanelet2 file (OSM XML); `file` names it in messages. Nodes have `lat` and `lon`, or tags
 /// `local_x` and `local_y` [m], which count where all nodes have them. A lanelet follows another where it begins at the
@@ -33,11 +33,11 @@ namespace cambium::map {
 [[nodiscard]] LaneletMap load_lanelet2(std::string const& path, std::optional<Lanelet2Origin> const& origin = {},
                                        MapOptions const& options = {});
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 using map::load_lanelet2;
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/lanelet/lanelet2_impl.hpp"

@@ -21,7 +21,7 @@
 #include "cambium/map/lanes/signal_codes.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -294,4 +294,4 @@ CAMBIUM_COLD LaneletMap load_lanelet2(std::string const& path, std::optional<Lan
   return build_lanelet_map(std::move(lanelets), options, path, std::move(diagnostics));
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

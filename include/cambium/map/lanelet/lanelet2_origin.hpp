@@ -2,7 +2,7 @@
 
 #include "cambium/core/parameters.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Projection of a Lanelet2 file's coordinates to metres: transverse Mercator in the UTM zone of the origin, which
 /// becomes (0, 0), as by Lanelet2's UTM projector. The file does not say which origin it was made with; without one, it
@@ -19,4 +19,4 @@ struct Lanelet2Origin {
   }
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

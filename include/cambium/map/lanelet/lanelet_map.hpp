@@ -14,7 +14,7 @@
 #include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A map made of lanelets.
 struct LaneletMap {
@@ -48,7 +48,7 @@ struct LaneletMap {
 /// behind the first have ids beyond those of all lanes. O(lanes log points).
 [[nodiscard]] std::vector<Lanelet> lanelets_of(Map const& map, std::int64_t first_id = 1);
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/lanelet/lanelet_map_impl.hpp"

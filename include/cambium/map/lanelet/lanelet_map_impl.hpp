@@ -29,7 +29,7 @@
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -299,4 +299,4 @@ CAMBIUM_COLD std::vector<Lanelet> lanelets_of(Map const& map, std::int64_t first
   return detail::LanesAsLanelets(map, first_id).make();
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -8,7 +8,7 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Where two lanes of a junction come so close that vehicles on them cannot be side by side (see `Overlap`).
 struct ConflictArea {
@@ -33,4 +33,4 @@ struct ConflictArea {
   return map.queries().conflict_areas(map, id);
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -11,7 +11,7 @@
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/road/lane_type.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Distances from a lane's path to its two borders [m]; negative where the path runs outside of the lane.
 struct SideWidths {
@@ -184,4 +184,4 @@ struct Lane {
   }
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

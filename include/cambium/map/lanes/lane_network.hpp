@@ -10,7 +10,7 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// What can be odd about the links between lanes.
 enum class NetworkFault : std::uint8_t {
@@ -58,13 +58,13 @@ struct NetworkTolerances {
 /// As above, for a map.
 [[nodiscard]] std::vector<NetworkFinding> check_lane_network(Map const& map, NetworkTolerances const& tolerances = {});
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 using map::check_lane_network;
 using map::NetworkFault;
 using map::NetworkFinding;
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/lanes/lane_network_impl.hpp"

@@ -4,7 +4,7 @@
 #include "cambium/map/detail/network_check.hpp"
 #include "cambium/map/lanes/lane_network.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 CAMBIUM_COLD std::vector<NetworkFinding> check_lane_network(std::span<Lane const> lanes,
                                                             NetworkTolerances const& tolerances) {
@@ -15,4 +15,4 @@ CAMBIUM_COLD std::vector<NetworkFinding> check_lane_network(Map const& map, Netw
   return check_lane_network(map.lanes(), tolerances);
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -18,7 +18,7 @@
 #include "cambium/map/lanes/detail/lane_index.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Which lanes `Map::lanes_near` looks for.
 struct LaneQuery {
@@ -161,4 +161,4 @@ class LaneTree {
   detail::LaneIndex drivable_, others_;
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -6,7 +6,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Height of a lane's path at path position `s` [m].
 using LaneElevation = std::function<double(Lane const&, double s)>;
@@ -38,7 +38,7 @@ inline constexpr double clear_height = 3.0;
 void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance,
                    ExactPath const& place = {});
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/lanes/overlaps_impl.hpp"

@@ -24,7 +24,7 @@
 /// refined on the exact paths. Lanes are also close for harmless reasons, and those contacts are dropped: lanes of one
 /// road side by side, lanes one behind the other near their joint, and a bridge over a road. What is left is a merge, a
 /// split or a crossing, told apart by the angle between the lanes and by the lanes that they share at their ends.
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -311,4 +311,4 @@ CAMBIUM_COLD void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& e
   detail::OverlapFinder(lanes, elevation, clearance, place).find();
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

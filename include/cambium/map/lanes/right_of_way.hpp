@@ -7,7 +7,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Which of two connecting roads goes first by the junction's priorities; nothing where these do not say.
 [[nodiscard]] inline std::optional<RoadId> goes_first(Junction const& junction, RoadId a, RoadId b) {
@@ -104,4 +104,4 @@ struct Approach {
                                    map.road(lane.road).left_hand_traffic);
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

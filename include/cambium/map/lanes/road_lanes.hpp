@@ -13,7 +13,7 @@
 #include "cambium/map/road/road.hpp"
 #include "cambium/map/road/station_offset.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A place on a road, and the lane that it is in.
 struct RoadPlace {
@@ -80,4 +80,4 @@ inline void add_lanes_at(Road const& road, StationOffset const& foot, std::vecto
   return places;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

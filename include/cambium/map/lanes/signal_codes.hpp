@@ -10,7 +10,7 @@
 
 #include "cambium/map/lanes/signals.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// What a code of a country's catalogue of signs and lights says.
 enum class SignalMeaning : std::uint8_t {
@@ -197,4 +197,4 @@ namespace detail {
   return find_signal(country, what.substr(0, dash), what.substr(dash + 1));
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -9,7 +9,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// What a sign or light at the road tells the traffic of a lane.
 enum class SignalKind : std::uint8_t {
@@ -95,4 +95,4 @@ struct LightPlan {
   }
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

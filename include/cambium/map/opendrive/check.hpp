@@ -6,7 +6,7 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Checks a document as a whole and appends what it finds: double ids (the later element is removed), links and
 /// connections that lead nowhere (kept), lane sections beyond the road's end (removed) or before its start (moved
@@ -16,7 +16,7 @@ namespace cambium::map {
 /// document.
 void check_opendrive_document(OpenDriveDocument& document, std::string file_name, std::vector<Diagnostic>& diagnostics);
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/opendrive/check_impl.hpp"

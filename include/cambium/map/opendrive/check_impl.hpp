@@ -19,7 +19,7 @@
 #include "cambium/map/road/lane_type.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -230,4 +230,4 @@ CAMBIUM_COLD void check_opendrive_document(OpenDriveDocument& document, std::str
   detail::DocumentCheck(document, std::move(file_name), diagnostics).run();
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

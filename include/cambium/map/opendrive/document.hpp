@@ -16,7 +16,7 @@
 /// An OpenDRIVE file as plain data: ids are text as in the file, and nothing is linked or sampled. The reader fills a
 /// document; checks, the writer and the map building work on it. What has no field is kept in the `rest` of its
 /// element. Two documents are equal when they say the same, no matter in which lines (`line`).
-namespace cambium::map::opendrive {
+namespace cambium::inline v0_1::map::opendrive {
 
 /// Which end of a road a link touches; `none`: not written.
 enum class ContactPoint { none, start, end };
@@ -219,9 +219,9 @@ struct Document {
   return ReferenceLine(std::move(geometries));
 }
 
-}  // namespace cambium::map::opendrive
+}  // namespace cambium::inline v0_1::map::opendrive
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 /// An OpenDRIVE file as a struct.
 using OpenDriveDocument = opendrive::Document;
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

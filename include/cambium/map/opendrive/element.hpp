@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace cambium::map::opendrive {
+namespace cambium::inline v0_1::map::opendrive {
 
 /// A line of the file, the first is 1; 0: unknown. It says where something was written, not what: any two are equal.
 struct FileLine {
@@ -62,4 +62,4 @@ struct Rest {
   friend bool operator==(Rest const&, Rest const&) = default;
 };
 
-}  // namespace cambium::map::opendrive
+}  // namespace cambium::inline v0_1::map::opendrive

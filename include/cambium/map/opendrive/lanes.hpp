@@ -9,7 +9,7 @@
 #include "cambium/map/road/lane_type.hpp"
 
 /// Lane sections of an OpenDRIVE file.
-namespace cambium::map::opendrive {
+namespace cambium::inline v0_1::map::opendrive {
 
 /// Across which side of a road mark lanes may be changed; `unspecified`: not written (the standard then means `both`).
 enum class LaneChangePermission { unspecified, both, increase, decrease, none };
@@ -88,4 +88,4 @@ struct LaneSection {
   friend bool operator==(LaneSection const&, LaneSection const&) = default;
 };
 
-}  // namespace cambium::map::opendrive
+}  // namespace cambium::inline v0_1::map::opendrive

@@ -11,7 +11,7 @@
 #error "cambium::compiled has no OpenDRIVE reader because CMake did not find pugixml: install it (libpugixml-dev)"
 #endif
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Reads an OpenDRIVE file (revisions 1.1 to 1.8) from its text; `file_name` only names it in messages. Numbers are
 /// read in the C locale. Oddities go to `diagnostics`, and what makes sense is read. Left out are bad records,
@@ -26,7 +26,7 @@ namespace cambium::map {
 [[nodiscard]] OpenDriveDocument read_opendrive_document(std::string_view text, std::string file_name,
                                                         std::vector<Diagnostic>& diagnostics);
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/opendrive/reader_impl.hpp"

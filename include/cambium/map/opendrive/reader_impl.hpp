@@ -20,7 +20,7 @@
 #include "cambium/map/opendrive/detail/xml_root.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -205,4 +205,4 @@ CAMBIUM_COLD OpenDriveDocument read_opendrive_document(std::string_view text, st
   return document;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

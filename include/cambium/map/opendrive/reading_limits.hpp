@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Largest file that is read [B]. Detailed maps of large cities have a few hundred MB.
 inline constexpr std::size_t largest_map_file = std::size_t{512} << 20;
@@ -18,4 +18,4 @@ inline constexpr std::size_t most_elements = 15'000'000;
 /// Most diagnostics that reading a file gives; the last one says that there are more.
 inline constexpr std::size_t most_diagnostics = 100'000;
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

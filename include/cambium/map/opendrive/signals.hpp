@@ -6,7 +6,7 @@
 #include "cambium/map/opendrive/element.hpp"
 
 /// Signs and traffic lights of an OpenDRIVE file, as far as lanes and maps need them.
-namespace cambium::map::opendrive {
+namespace cambium::inline v0_1::map::opendrive {
 
 /// The direction of travel that a signal applies to: "+" along the road's s, "-" against it, "none" both.
 enum class Orientation { both, along, against };
@@ -50,4 +50,4 @@ struct Controller {
   friend bool operator==(Controller const&, Controller const&) = default;
 };
 
-}  // namespace cambium::map::opendrive
+}  // namespace cambium::inline v0_1::map::opendrive

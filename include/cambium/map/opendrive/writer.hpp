@@ -5,7 +5,7 @@
 
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// The document as an OpenDRIVE file: UTF-8, numbers as short as they can be for the same value to be read again. What
 /// the reader makes of it equals the document (but for characters that XML cannot hold, which become U+FFFD, and for
@@ -17,11 +17,11 @@ namespace cambium::map {
 /// and the system's reason where the file cannot be written.
 void write_opendrive(std::filesystem::path const& path, OpenDriveDocument const& document);
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 using map::write_opendrive;
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/opendrive/writer_impl.hpp"

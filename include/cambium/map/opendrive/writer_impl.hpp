@@ -11,7 +11,7 @@
 #include "cambium/map/opendrive/detail/lanes_writer.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -192,4 +192,4 @@ CAMBIUM_COLD void write_opendrive(std::filesystem::path const& path, OpenDriveDo
   write_file(path, write_opendrive(document));
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -6,7 +6,7 @@
 #include "cambium/map/opendrive/detail/xml_text.hpp"
 
 /// What readers and writers of other XML formats share with those of OpenDRIVE: limits, lines, findings, numbers.
-namespace cambium::map::xml {
+namespace cambium::inline v0_1::map::xml {
 
 using detail::find_child;
 using detail::for_each_child;
@@ -18,4 +18,4 @@ using detail::trimmed;
 using detail::XmlContext;
 using detail::XmlText;
 
-}  // namespace cambium::map::xml
+}  // namespace cambium::inline v0_1::map::xml

@@ -8,7 +8,7 @@
 
 #include "cambium/core/stable_sort.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// The polynomial a + b u + c u^2 + d u^3 with u = station - s, valid from `s` to the next record [m].
 struct CubicRecord {
@@ -99,4 +99,4 @@ class CubicProfile {
   BeforeFirst before_ = BeforeFirst::zero;
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -14,7 +14,7 @@
 /// from them: so errors do not add up along a road, and every compiler's sine gives the same numbers. All functions
 /// throw `MapError` for numbers that are not finite, poses beyond 1e8 m or 1e4 rad, and pieces that are not longer
 /// than 0, longer than 1000 km, or turn by more than 100 rad.
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A piece of a plan view: a line, an arc where the curvatures are equal, else a spiral.
 struct CurvePiece {
@@ -58,7 +58,7 @@ struct CurvePiece {
                                                  std::span<geometry::Point const> corners, std::optional<double> begin,
                                                  std::optional<double> end, std::string const& where = "polyline");
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/road/curve_layout_impl.hpp"

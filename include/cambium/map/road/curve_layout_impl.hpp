@@ -11,7 +11,7 @@
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/map/road/parametric_cubic.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -273,4 +273,4 @@ CAMBIUM_COLD std::vector<Geometry> curve_around(std::span<geometry::Point const>
   return geometries;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string_view>
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// What a lane is for: the types of OpenDRIVE 1.1 to 1.8. `other` stands for every other word; those from `driving` to
 /// `bidirectional` are drivable.
@@ -74,4 +74,4 @@ static_assert(std::size(lane_type_words) == static_cast<std::size_t>(LaneType::o
   return type >= LaneType::driving && type <= LaneType::bidirectional;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -8,7 +8,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/map/road/detail/quadrature.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A point of a curve with its tangent, and derivatives by arc length.
 struct CurvePoint {
@@ -116,4 +116,4 @@ class ParametricCubic {
   std::array<double, panels + 1> arc_{};
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

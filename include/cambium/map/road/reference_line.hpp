@@ -15,7 +15,7 @@
 #include "cambium/map/road/detail/quadrature.hpp"
 #include "cambium/map/road/parametric_cubic.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// What a piece of a plan view is.
 enum class GeometryKind { line, arc, spiral, cubic };
@@ -174,4 +174,4 @@ class ReferenceLine {
   std::vector<Geometry> geometries_;
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

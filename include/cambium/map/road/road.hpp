@@ -12,7 +12,7 @@
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Height of a lane's borders above the road's surface [m], as at a kerb, from `s` after the section's start on.
 struct LaneHeight {
@@ -189,4 +189,4 @@ namespace detail {
   return std::nullopt;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -4,7 +4,7 @@
 
 #include "cambium/map/road/road.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// A point of the road's surface in space, and how the surface lies there.
 struct SurfacePoint {
@@ -18,7 +18,7 @@ struct SurfacePoint {
 /// out horizontally. Heights stand upright on that plane. O(lanes) more than `lane_point`.
 [[nodiscard]] SurfacePoint surface_at(Road const& road, double s, double t);
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/road/road_surface_impl.hpp"

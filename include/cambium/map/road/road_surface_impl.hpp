@@ -9,7 +9,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/map/road/road_surface.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -86,4 +86,4 @@ CAMBIUM_COLD SurfacePoint surface_at(Road const& road, double s, double t) {
   return point;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -12,7 +12,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Where a point lies relative to a reference line.
 struct StationOffset {
@@ -129,4 +129,4 @@ class FootFinder {
   return best;
 }
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

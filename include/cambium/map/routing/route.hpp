@@ -9,7 +9,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// The way from a start to a destination: lanes in order; neighbours in the list are successors, or beside each other
 /// (a lane change).
@@ -52,4 +52,4 @@ struct ReachedLane {
   double cost{};
 };
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

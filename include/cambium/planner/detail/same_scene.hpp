@@ -10,7 +10,7 @@
 #include "cambium/goal/goal.hpp"
 #include "cambium/world/roster.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 template <class Choice>
 [[nodiscard]] bool is_same_choice(Choice const& a, Choice const& b);
@@ -67,7 +67,7 @@ template <class World>
   return true;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/planner/detail/same_scene_impl.hpp"

@@ -7,7 +7,7 @@
 #include "cambium/planner/detail/same_scene.hpp"
 #include "cambium/world/static_object.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 CAMBIUM_COLD bool is_same_besides_agents(RosterBase const& a, RosterBase const& b) {
   auto const is_same_object = [](StaticObject const& one, StaticObject const& other) {
@@ -18,4 +18,4 @@ CAMBIUM_COLD bool is_same_besides_agents(RosterBase const& a, RosterBase const& 
          std::equal(a.objects.begin(), a.objects.end(), b.objects.begin(), b.objects.end(), is_same_object);
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

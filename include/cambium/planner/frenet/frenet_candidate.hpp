@@ -10,7 +10,7 @@
 #include "cambium/planner/frenet/frenet_motion.hpp"
 #include "cambium/planner/frenet/quintic.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Weights of the cost of a course (Werling, Ziegler, Kammel, Thrun 2010, sections V and VI).
 struct FrenetCosts {
@@ -197,4 +197,4 @@ struct FrenetTarget {
   return std::abs(course.curvature) > limits.highest_curvature ? FrenetVerdict::curvature : FrenetVerdict::valid;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

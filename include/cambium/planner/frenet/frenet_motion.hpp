@@ -4,7 +4,7 @@
 
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A motion in the Frenet frame of a line: `s` and its derivatives in time, the offset and its derivatives in `s`.
 ///
@@ -72,4 +72,4 @@ template <class Scalar>
   return {s, speed, (c.acceleration - speed * speed * lengthening) / way, offset, slope, bend};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -30,7 +30,7 @@
 #include "cambium/planner/frenet/frenet_candidate.hpp"
 #include "cambium/planner/search/search_budget.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Acceleration and curvature where the last course has taken the vehicle, so that the next one continues smoothly, and
 /// what it knows of signals and junctions.
@@ -533,4 +533,4 @@ struct FrenetPlanner {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

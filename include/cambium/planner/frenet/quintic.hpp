@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A quantity and its first two derivatives in time.
 template <class Scalar>
@@ -66,4 +66,4 @@ template <class Scalar>
            Scalar(0)}};
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

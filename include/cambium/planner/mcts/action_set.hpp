@@ -16,7 +16,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/planner/predicted.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Accelerations and steering angles from a continuum, for a search with progressive widening. `ExternalInput`, which
 /// must be in the behaviour set of the prediction world, carries them out.
@@ -211,4 +211,4 @@ using UsualActions = std::conditional_t<HasBehavior<PredictionWorld, Driving>, D
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

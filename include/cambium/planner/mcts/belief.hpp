@@ -13,7 +13,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How a planner updates its beliefs about others as it observes them.
 struct BeliefParameters {
@@ -107,4 +107,4 @@ class Belief {
   std::uint8_t size_ = 1;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

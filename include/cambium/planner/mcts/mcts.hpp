@@ -23,7 +23,7 @@
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/predicted.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -362,4 +362,4 @@ struct Mcts {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

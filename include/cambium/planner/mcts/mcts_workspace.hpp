@@ -19,7 +19,7 @@
 #include "cambium/planner/search/puct.hpp"
 #include "cambium/planner/search/tree_search.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Settings of a tree search in traffic. Under a `TimeBudget` the result depends on the machine and its load.
 template <SelectionPolicy SelectionType = Puct, class RolloutType = PolicyRollout,
@@ -273,4 +273,4 @@ void throw_if(SearchResult<Action> const& result, Workspace& workspace, AgentId 
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -18,7 +18,7 @@
 #include "cambium/planner/mcts/traffic_reward.hpp"
 #include "cambium/planner/search/search_domain.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Traffic as a game: a prediction world in which some agents, ego first, choose an action for the next `hold` steps of
 /// `dt` [s], while the others behave as predicted. A state is a frame; all states share the roster. When the course of
@@ -284,4 +284,4 @@ class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> 
   Others hypotheses_{};
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 #include "cambium/evaluation/terms.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Judges, for a search, the state of the agent at `slot` of `world` after a step of `dt` [s]. A copyable, described
 /// struct (`static constexpr auto parameters()`, see `TrafficReward`) with
@@ -172,4 +172,4 @@ struct Reward {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -13,7 +13,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Ten actions: keep the lane, change left or change right, each at constant speed, faster or slower, but never faster
 /// than car following permits (Ding, Zhang, Chen, Shen 2020, section IV); and an emergency stop, so that one is
@@ -228,4 +228,4 @@ struct PolicyWeights {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

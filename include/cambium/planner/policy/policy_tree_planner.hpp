@@ -19,7 +19,7 @@
 #include "cambium/planner/policy/policy_tree.hpp"
 #include "cambium/planner/search/search_budget.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A sequence of ego's actions and its cost. In a plan, unlike a report, one that cannot win is broken off: then its
 /// cost is a bound, above that of the best, and the other figures are incomplete.
@@ -411,4 +411,4 @@ struct PolicyTreePlanner {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

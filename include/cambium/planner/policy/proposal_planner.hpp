@@ -20,7 +20,7 @@
 #include "cambium/planner/candidate_planner.hpp"
 #include "cambium/planner/search/search_budget.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// How a `ProposalPlanner` scores a proposal: the weights of its marks, and the limits of comfort.
 struct ProposalScoring {
@@ -373,4 +373,4 @@ struct ProposalPlanner {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

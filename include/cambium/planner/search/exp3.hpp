@@ -9,7 +9,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Exp3 (Auer, Cesa-Bianchi, Freund, Schapire 2002): plays one of K arms in proportion to exp(gamma G / K). G sums the
 /// arm's scores, each divided by the probability with which it was played; gamma is the share of random choices. Makes
@@ -72,4 +72,4 @@ struct Exp3 {
 };
 static_assert(SelectionPolicy<Exp3>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

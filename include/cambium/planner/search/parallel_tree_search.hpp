@@ -14,7 +14,7 @@
 #include "cambium/planner/search/search_result.hpp"
 #include "cambium/planner/search/tree_search_parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Several independent trees, one per thread, merged at the root: visits and returns of the same action are added (root
 /// parallelisation: Chaslot, Winands, van den Herik 2008). The trees share the budget and the memory. Under an
@@ -164,4 +164,4 @@ class ParallelTreeSearch {
   Result result_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// PUCT (Rosin 2011, as in Silver 2017): selects the arm with the highest score plus exploration D P sqrt(N) / (1 + n).
 /// P is its prior probability: `SearchDomain::priors`, normalised over the node's actions, or uniform without them. D,
@@ -73,4 +73,4 @@ struct Puct {
 };
 static_assert(SelectionPolicy<Puct>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Regret matching for simultaneous moves (Hart, Mas-Colell 2000; in trees: Lanctot, Lisy, Winands 2014): plays an arm
 /// in proportion to the regret of not having played it. In zero-sum games the visits converge to a mixed equilibrium,
@@ -73,4 +73,4 @@ struct RegretMatching {
 };
 static_assert(SelectionPolicy<RegretMatching>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/planner/search/search_domain.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The input, output and working memory of one roll-out. The search owns it all.
 template <SearchDomain Domain>
@@ -164,4 +164,4 @@ struct NoRollout {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -101,4 +101,4 @@ struct NoBudget {
 };
 static_assert(SearchBudget<NoBudget>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

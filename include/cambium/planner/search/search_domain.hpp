@@ -9,7 +9,7 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/random.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Why a search has no result. `throw_if` puts it in words, in this order.
 enum class SearchProblem : std::uint8_t {
@@ -163,4 +163,4 @@ concept SearchDomain = std::copy_constructible<D> && std::copyable<typename D::S
   requires detail::ListsActions<D> || detail::SamplesActions<D>;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

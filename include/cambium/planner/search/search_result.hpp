@@ -17,7 +17,7 @@
 #include "cambium/planner/search/selection_policy.hpp"
 #include "cambium/planner/search/tree_search_parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Thrown if a search is impossible or its game is faulty.
 struct SearchError : Error {
@@ -169,4 +169,4 @@ void fill_result(Tree const& tree, std::span<ReturnScale const> scales, TreeSear
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -12,7 +12,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// What a search knows about one action of one agent at one node. `Statistics`: additional data of the selection
 /// policy.
@@ -150,4 +150,4 @@ template <class Arms, class Score>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -7,7 +7,7 @@
 
 #include "cambium/core/parameters.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -88,4 +88,4 @@ template <class Search>
   return text + "}\n";
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

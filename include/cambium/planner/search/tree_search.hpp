@@ -20,7 +20,7 @@
 #include "cambium/planner/search/tree_search_parameters.hpp"
 #include "cambium/planner/search/ucb1.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Monte Carlo tree search in which all agents choose at the same time, each by its own bandit at every node (decoupled
 /// UCT with `Ucb1`: Tak, Lanctot, Winands 2014). With one agent it is UCT (Kocsis, Szepesvari 2006).
@@ -446,4 +446,4 @@ class TreeSearch {
   std::vector<AgentOutcome> path_outcomes_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -10,7 +10,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/portable_math.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Progressive widening (Coulom 2007; of actions and of outcomes: Couetoux et al. 2011): after N visits, a node may
 /// have coefficient N^exponent children, at least one.
@@ -132,4 +132,4 @@ struct TreeSearchParameters {
   }
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

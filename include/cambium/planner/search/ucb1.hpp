@@ -11,7 +11,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// UCB1 (Auer, Cesa-Bianchi, Fischer 2002; in trees: Kocsis, Szepesvari 2006): selects the arm with the highest score
 /// plus exploration sqrt(ln N / n), for n visits of the arm and N of all. Untried arms come first, in random order.
@@ -87,4 +87,4 @@ struct Ucb1Tuned {
 };
 static_assert(SelectionPolicy<Ucb1Tuned>);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

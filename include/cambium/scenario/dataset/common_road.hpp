@@ -10,7 +10,7 @@
 #error "cambium::compiled has no CommonRoad reader because CMake did not find pugixml: install it (libpugixml-dev)"
 #endif
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// Reads a CommonRoad scenario (XML of the versions 2018b and 2020a; Althoff, Koschi, Manzinger 2017): lanelets, which
 /// become the map (null without any), signs, lights and intersections as far as `map::Lanelet` has them, static and
@@ -28,7 +28,7 @@ namespace cambium {
 /// As `parse_common_road`, from a file. Throws `Error` where it cannot be read, too.
 [[nodiscard]] RecordedTraffic load_common_road(std::string const& path, map::MapOptions const& options = {});
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/dataset/common_road_impl.hpp"

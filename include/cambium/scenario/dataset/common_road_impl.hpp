@@ -19,7 +19,7 @@
 #include "cambium/scenario/dataset/common_road.hpp"
 #include "cambium/scenario/dataset/detail/common_road_lanes.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -287,4 +287,4 @@ CAMBIUM_COLD RecordedTraffic load_common_road(std::string const& path, map::MapO
   return parse_common_road(map::xml::read_map_file(path, "give a CommonRoad scenario (.xml)"), options, path);
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

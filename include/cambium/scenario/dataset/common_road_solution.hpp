@@ -7,7 +7,7 @@
 
 #include "cambium/core/state.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A solution of a CommonRoad planning problem, and how it is to be judged.
 struct CommonRoadSolution {
@@ -33,7 +33,7 @@ struct CommonRoadSolution {
 [[nodiscard]] CommonRoadSolution parse_common_road_solution(std::string_view text, double time_step,
                                                             std::string const& file = "text");
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/dataset/common_road_solution_impl.hpp"

@@ -19,7 +19,7 @@
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/common_road_solution.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -133,4 +133,4 @@ CAMBIUM_COLD CommonRoadSolution parse_common_road_solution(std::string_view text
   return solution;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -4,7 +4,7 @@
 
 #include "cambium/scenario/dataset/recorded_traffic.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The head of a CommonRoad file.
 struct CommonRoadHeader {
@@ -25,7 +25,7 @@ struct CommonRoadHeader {
 /// a word; lanelets with one id; a goal without its first or last time.
 [[nodiscard]] std::string common_road_text(RecordedTraffic const& traffic, CommonRoadHeader const& header = {});
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/dataset/common_road_writer_impl.hpp"

@@ -19,7 +19,7 @@
 #include "cambium/scenario/dataset/common_road_writer.hpp"
 #include "cambium/scenario/dataset/detail/common_road_lanes.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -354,4 +354,4 @@ CAMBIUM_COLD std::string common_road_text(RecordedTraffic const& traffic, Common
   return detail::CommonRoadWriter(traffic, header).write();
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -26,7 +26,7 @@
 #include "cambium/scenario/dataset/recorded_traffic.hpp"
 #include "cambium/scenario/scenario.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// A part of a recording, by its times [s].
 struct RecordingWindow {
@@ -233,7 +233,7 @@ template <class WorldType, class ToBehavior>
   return result;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/dataset/recorded_scenario_impl.hpp"

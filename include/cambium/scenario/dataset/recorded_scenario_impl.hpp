@@ -22,7 +22,7 @@
 #include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/scenario/dataset/recorded_scenario.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -264,4 +264,4 @@ CAMBIUM_COLD std::optional<TrackWay> way_of(Map const& map, Track const& track, 
   return way;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -23,7 +23,7 @@
 #include "cambium/map/map.hpp"
 
 /// Recorded traffic, whatever data set or file it comes from.
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The kind of road user of a track.
 enum class TrackType : std::uint8_t { car, truck, bus, motorcycle, bicycle, pedestrian, other };
@@ -167,7 +167,7 @@ void add_tracks(RecordedTraffic& traffic, RecordedTraffic const& more);
 /// where two have the same id.
 void check_recorded_traffic(RecordedTraffic const& traffic);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/dataset/recorded_traffic_impl.hpp"

@@ -14,7 +14,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/scenario/dataset/recorded_traffic.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 CAMBIUM_COLD std::vector<LaneId> GoalState::lanes(Map const& map) const {
   constexpr double step = 0.5;  // [m]
@@ -99,4 +99,4 @@ CAMBIUM_COLD void check_recorded_traffic(RecordedTraffic const& traffic) {
   }
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -11,7 +11,7 @@
 #include "cambium/scenario/dataset/recorded_traffic.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The type of a body by its size, because a world does not say it.
 [[nodiscard]] constexpr TrackType type_of_body(double length, double width) {
@@ -77,4 +77,4 @@ class TrackRecorder {
   std::map<AgentId, std::size_t> places_;
 };
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

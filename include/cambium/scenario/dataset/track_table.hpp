@@ -7,7 +7,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/scenario/dataset/recorded_traffic.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The point of a body whose place a table gives.
 enum class TrackAnchor : std::uint8_t {
@@ -82,7 +82,7 @@ struct TrackTable {
 /// bits; speeds but for rounding; times become whole milliseconds. Linear in the states.
 [[nodiscard]] std::string interaction_text(RecordedTraffic const& traffic);
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/dataset/track_table_impl.hpp"

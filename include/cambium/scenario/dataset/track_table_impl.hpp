@@ -23,7 +23,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/scenario/dataset/track_table.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 namespace detail {
 
@@ -435,4 +435,4 @@ CAMBIUM_COLD std::string interaction_text(RecordedTraffic const& traffic) {
   return text;
 }
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -13,7 +13,7 @@
 #include "cambium/core/type_info.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Lanes of several maps by name: in the files' structs, `LaneId` k stands for the k-th name.
 class LaneTable final : public LaneNames {
@@ -52,7 +52,7 @@ class MapFiles {
 void exchange_lanes(TypeInfo const& type, void* object, Map const& map, LaneTable const& table, bool to_map,
                     std::string const& where);
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/scenario/detail/scenario_maps_impl.hpp"

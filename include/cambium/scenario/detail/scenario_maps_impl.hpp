@@ -17,7 +17,7 @@
 #include "cambium/map/opendrive.hpp"
 #include "cambium/scenario/detail/scenario_maps.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 CAMBIUM_COLD LaneId LaneTable::lane(std::string_view name) const {
   auto const known = numbers_.find(name);
@@ -91,4 +91,4 @@ CAMBIUM_COLD std::shared_ptr<Map const> MapFiles::load(std::filesystem::path con
   return map;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

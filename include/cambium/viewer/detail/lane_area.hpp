@@ -9,7 +9,7 @@
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/viewer/recording.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 using PointList = std::vector<geometry::Point>;
 
@@ -150,4 +150,4 @@ inline std::vector<LaneArrow> lane_arrows(std::vector<RecordedLane> const& lanes
   return arrows;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

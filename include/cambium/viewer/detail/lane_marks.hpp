@@ -15,7 +15,7 @@
 #include "cambium/viewer/detail/lane_area.hpp"
 #include "cambium/viewer/recording.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// How a piece of a lane border is painted.
 enum class MarkStyle : std::uint32_t {
@@ -229,4 +229,4 @@ class LaneMarker {
   geometry::BoxTree coverer_tree_;     ///< boxes of their areas
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -26,7 +26,7 @@
 #include "cambium/viewer/detail/svg_panel.hpp"
 #include "cambium/viewer/map_picture_options.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Draws a map as SVG in layers, in metres, with the map's y axis upwards.
 class MapDrawing {
@@ -295,4 +295,4 @@ class MapDrawing {
   std::string out_;
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

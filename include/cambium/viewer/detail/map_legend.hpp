@@ -7,7 +7,7 @@
 
 #include "cambium/viewer/detail/svg_panel.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// A sample of a map element as SVG, 3 m by 1.5 m, and what it means.
 struct LegendEntry {
@@ -44,4 +44,4 @@ struct MapLegend {
   return {text + "</g>", static_cast<double>(rows) * row + 2.0 * margin};
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -9,7 +9,7 @@
 #include "cambium/viewer/detail/page_script.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Style sheet of a map picture. The classes of areas are OpenDRIVE's lane types.
 inline constexpr std::string_view map_picture_style =
@@ -112,4 +112,4 @@ inline constexpr std::string_view map_page_keys =
          std::string(map_page_script) + "})();</script></body></html>\n";
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The script of a map's page: pan, zoom, search and layers. The picture's view box always has the aspect ratio of the
 /// window, so that `view` alone defines what is shown: the point in the middle, in the picture's metres, and the pixels
@@ -157,4 +157,4 @@ addEventListener('hashchange', obeyAddress);
 obeyAddress();
 )js";
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

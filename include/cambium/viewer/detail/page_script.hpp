@@ -5,7 +5,7 @@
 
 #include "cambium/core/markup.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// What the scripts of both pages begin with: pointers that drag, pinch, turn the wheel and tap, and the scale bar.
 inline constexpr std::string_view page_script = R"js(
@@ -71,4 +71,4 @@ function drawScale(most, scale) {
          escape_markup(title) + "</title>\n<style>";
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Second half of the replay page's script: the displays around the map, the controls, and `window.replay` for tests.
 /// The address may end in `#frame=12`, `#play`, `#select=id`, `#follow=0`, `#fit`, `#probe=x,y;x,y` (map coordinates),
@@ -232,4 +232,4 @@ function start() {
 start();
 )js";
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

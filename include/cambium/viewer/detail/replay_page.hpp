@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Style sheet of the replay page. The canvas reads its colours from these variables, so that light and dark mode are
 /// defined in one place.
@@ -144,4 +144,4 @@ inline constexpr std::string_view replay_body = R"html(<main>
 </footer>
 )html";
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

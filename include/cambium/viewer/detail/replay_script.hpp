@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// First half of the replay page's script: the data, the pose of an agent at any time, the camera and the drawing.
 /// Coordinates are metres relative to the recording's origin. `at` is a frame number, fractional between two frames.
@@ -274,4 +274,4 @@ function drawNumber(agent, pose) {
 }
 )js";
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -6,7 +6,7 @@
 #include "cambium/core/markup.hpp"
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// `value` as text for an SVG attribute.
 inline std::string svg_number(double value, int decimals = 2) {
@@ -58,4 +58,4 @@ inline std::string svg_scale_bar(SvgPanel const& panel) {
          "\" font-size=\"12\" text-anchor=\"middle\" fill=\"#16202b\">" + svg_number(metres) + " m</text>\n";
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

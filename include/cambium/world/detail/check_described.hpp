@@ -6,7 +6,7 @@
 #include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Throws `ParameterError` if a parameter of a described struct, of the struct that a set holds, or of a described
 /// stage in a chain with others, is out of range.
@@ -29,4 +29,4 @@ void check_models(Agent const& agent, std::string const& where) {
   check_if_described(agent.observer, where);
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

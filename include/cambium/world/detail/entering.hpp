@@ -25,7 +25,7 @@
 #include "cambium/world/frame.hpp"
 #include "cambium/world/roster.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The part of an entering agent that does not depend on the world's models.
 struct EnteringSpec {
@@ -140,7 +140,7 @@ template <class World>
           record};
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/world/detail/entering_impl.hpp"

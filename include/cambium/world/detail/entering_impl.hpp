@@ -23,7 +23,7 @@
 #include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/detail/refusals.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The place in lane `lane` where an agent of `spec` enters `road`, on the main corridor if that contains the lane.
 [[nodiscard]] inline map::LanePlace entering_position(Map const& map, EnteringSpec const& spec,
@@ -182,4 +182,4 @@ CAMBIUM_COLD void check_id(AgentId id, bool is_taken, std::string const& where) 
     throw WorldError(where, "the world already has an agent with this id", "leave the id out to get a free one");
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -20,7 +20,7 @@
 #include "cambium/world/detail/objects_on_lanes.hpp"
 #include "cambium/world/detail/refusals.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The lane of `route` whose path is nearest to `position`, where each radian of heading error counts as 3 m. The path
 /// decides and not the borders, because a merging lane's path leaves the lane. Throws `WorldError` if each lane is more
@@ -205,4 +205,4 @@ class Destinations {
   return route.lanes.empty() ? map::straight_route(map, start) : route;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -6,7 +6,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Whether the other agent's bounding circle comes within `distance` [m] of the agent in slot `own`.
 template <class World>
@@ -34,4 +34,4 @@ void for_each_around(World const& world, Slot own, double distance, Visit const&
   }
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

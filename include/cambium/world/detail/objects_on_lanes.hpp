@@ -15,7 +15,7 @@
 #include "cambium/world/static_object.hpp"
 #include "cambium/world/traffic_index.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Points along a polygon's outline, its corners among them, at most `spacing` [m] apart.
 [[nodiscard]] inline std::vector<geometry::Point> points_around(geometry::Polygon const& outline, double spacing) {
@@ -84,4 +84,4 @@ inline void enter_object(map::LaneCorridor const& way, StaticObject const& objec
   return entries;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

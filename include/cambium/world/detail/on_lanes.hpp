@@ -15,7 +15,7 @@
 #include "cambium/world/plane_index.hpp"
 #include "cambium/world/traffic_index.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// A square that contains all points within `distance` [m] of an agent, whatever its heading.
 template <class State>
@@ -207,7 +207,7 @@ void refresh_plane(PlaneIndex& index, Roster const& roster, Frame const& frame) 
   });
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/world/detail/on_lanes_impl.hpp"

@@ -16,7 +16,7 @@
 #include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/traffic_index.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The agent's entry in `lane`, at its foot point `s` [m]: its speed along that lane and its extent ahead and behind.
 [[nodiscard]] inline TrafficEntry entry_in(map::Lane const& lane, double s, BodyOnRoad const& body,
@@ -102,4 +102,4 @@ CAMBIUM_COLD bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry 
   return true;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -10,7 +10,7 @@
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Largest distance of an agent from its lane when it enters, or from the lanes of its route when its state is set [m].
 inline constexpr double entering_radius = 5.0;
@@ -55,7 +55,7 @@ void require_kept(std::size_t steps_back, std::size_t kept);
 /// Throws `WorldError` about an agent: what is wrong, and what to do.
 [[noreturn]] void refuse(AgentId id, char const* what, char const* remedy = "");
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/world/detail/refusals_impl.hpp"

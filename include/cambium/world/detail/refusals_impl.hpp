@@ -17,7 +17,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/world/detail/refusals.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 CAMBIUM_COLD double checked_speed(double speed, std::string const& where) {
   if (speed >= -standstill_noise && speed <= fastest) return std::max(speed, 0.0);
@@ -92,4 +92,4 @@ CAMBIUM_COLD void refuse(AgentId id, char const* what, char const* remedy) {
   throw WorldError(name_of(id), what, remedy);
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

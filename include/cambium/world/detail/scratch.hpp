@@ -7,7 +7,7 @@
 #include "cambium/world/plane_index.hpp"
 #include "cambium/world/traffic_index.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// A world's working memory: never copied or compared; assignment to the world keeps its allocations.
 template <class Frame, class Workspaces>
@@ -55,4 +55,4 @@ struct Scratch {
   }
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -10,7 +10,7 @@
 #include "cambium/world/frame.hpp"
 #include "cambium/world/static_object.hpp"
 
-namespace cambium {
+namespace cambium::inline v0_1 {
 
 /// The random stream's purpose for observing `agent`; distinct from the purposes that behaviours use.
 [[nodiscard]] constexpr std::uint32_t observation_purpose(AgentId agent) {
@@ -141,4 +141,4 @@ template <class World>
 
 }  // namespace detail
 
-}  // namespace cambium
+}  // namespace cambium::inline v0_1

@@ -16,7 +16,7 @@
 #include "cambium/world/detail/seen.hpp"
 #include "cambium/world/traffic_query.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Whether observers of `World` may see an agent elsewhere than it is. One that returns the state itself only hides.
 template <class World>
@@ -62,4 +62,4 @@ CAMBIUM_NOINLINE [[nodiscard]] bool is_seen_in_lane(World const& world, Slot own
                       lane.widths_at(std::clamp(foot.s, 0.0, lane.length())));
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

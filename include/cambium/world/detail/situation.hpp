@@ -8,7 +8,7 @@
 #include "cambium/goal/goal_situation.hpp"
 #include "cambium/world/frame.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// An agent's situation as goals see it, from `agent` in the roster and its `record` in the frame.
 template <class Agent, class Record>
@@ -36,4 +36,4 @@ void pass_goals(Agent const& agent, Goal const& goal, Record& record) {
     record.goals_passed = static_cast<std::uint8_t>(sequence->pass(situation_of(agent, record)));
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

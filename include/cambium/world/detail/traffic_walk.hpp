@@ -7,7 +7,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/world/traffic_query.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// Entries in their order.
 using TrafficList = std::span<TrafficEntry const>;
@@ -72,4 +72,4 @@ struct TrafficWalk {
   [[nodiscard]] double reach_back() const { return sign > 0 ? (**this).rear : (**this).front; }
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -4,7 +4,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The centre line segment under an agent, for a prefetch before the step reaches that agent. Returns the address
 /// instead of prefetching it, because compilers drop calls to functions that only prefetch.
@@ -26,4 +26,4 @@ template <class Roster, class Frame>
   return road.corridors[side].center.segments().data() + hint_beside(road, at, piece, side).segment;
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

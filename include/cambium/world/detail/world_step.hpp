@@ -18,7 +18,7 @@
 #include "cambium/world/prediction.hpp"
 #include "cambium/world/step_result.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// One step of a world: fills the records of the next frame from those of the current one.
 template <class World>
@@ -142,4 +142,4 @@ class WorldStep {
   StepResult result_{};
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -9,7 +9,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Where the elements of a growing list are, by their ids.
 template <class Element>
@@ -93,4 +93,4 @@ class DocumentIndex {
   std::size_t free_ = 1;  ///< the numbers before are taken, or were
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

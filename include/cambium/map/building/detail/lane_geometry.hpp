@@ -17,7 +17,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/road/road.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The place of the lane `number` among those of its section.
 [[nodiscard]] inline std::size_t column_of(RoadSection const& section, int number) {
@@ -168,4 +168,4 @@ class ExactPaths {
   MapOptions const& options_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

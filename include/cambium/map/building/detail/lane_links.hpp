@@ -12,7 +12,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Enters that `to` follows `from`.
 inline void join_lanes(Lane& from, Lane& to) {
@@ -175,4 +175,4 @@ class LaneLinker {
   Findings& findings_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

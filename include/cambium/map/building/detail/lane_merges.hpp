@@ -19,7 +19,7 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Where a lane that merges leaves its middle: a little before it narrows, or over the last `longest` [m] of one that
 /// does not.
@@ -238,4 +238,4 @@ class LaneMerger {
   std::set<LaneId> dead_ends_;  ///< lanes that must not merge, or could not
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

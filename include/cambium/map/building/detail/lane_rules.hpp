@@ -20,7 +20,7 @@
 #include "cambium/map/opendrive/document.hpp"
 
 /// What a document says about driving in lanes: speed limits, lane changes, signs and lights.
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The limit of the last of `records` that begins at or before `s` [m/s]; nothing where that one has none that is one.
 template <class Record>
@@ -161,4 +161,4 @@ inline void set_lane_changes(OpenDriveDocument const& document, std::span<Lane> 
   }
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -20,7 +20,7 @@
 #include "cambium/map/lanes/signal_codes.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Gives lanes the signs and lights that the file has for them, see `SignalKind`, and lists the lights. What it cannot
 /// give to a lane, or does not know, becomes a finding.
@@ -261,4 +261,4 @@ class LaneSignals {
   std::vector<TrafficLight> lights_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -18,7 +18,7 @@
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane_network.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Reports links that only one side knows, and joined lanes that do not meet: a line for each pair of roads.
 class LinkCheck {
@@ -173,4 +173,4 @@ class LinkCheck {
   Findings& findings_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

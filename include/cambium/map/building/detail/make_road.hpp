@@ -9,7 +9,7 @@
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/road.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// What lies across the road's elevation.
 inline void set_surface(opendrive::RoadElement const& source, Road& road) {
@@ -64,4 +64,4 @@ inline void set_surface(opendrive::RoadElement const& source, Road& road) {
   return road;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

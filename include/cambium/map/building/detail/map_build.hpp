@@ -22,7 +22,7 @@
 #include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/lanes/overlaps.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 [[nodiscard]] inline bool runs_both_ways(opendrive::LaneElement const& lane) {
   return lane.direction == opendrive::LaneDirection::both || lane.type == LaneType::bidirectional;
@@ -217,4 +217,4 @@ class MapBuild {
   Map::Parts parts_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

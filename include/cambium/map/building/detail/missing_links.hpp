@@ -15,7 +15,7 @@
 #include "cambium/map/lanes/lane_network.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Finds links that a file seems to have forgotten: where a lane ends and another begins, neither is linked, and the
 /// links of their roads (or that there are none) permit it.
@@ -146,4 +146,4 @@ class MissingLinks {
   Findings& findings_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

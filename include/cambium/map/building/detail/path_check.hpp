@@ -16,7 +16,7 @@
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/road.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// How much a path turns within a metre where it turns most [rad], and where that begins [m].
 struct SharpestTurn {
@@ -120,4 +120,4 @@ inline void report_paths(std::span<Lane const> lanes, LaneFindings const& findin
   }
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

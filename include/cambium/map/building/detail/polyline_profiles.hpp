@@ -13,7 +13,7 @@
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// A smooth curve through `values` at the stations `s`, monotone between them: it leaves neither the range of two
 /// neighbouring values nor has it kinks (Fritsch, Butland 1984).
@@ -64,4 +64,4 @@ namespace cambium::map::detail {
   return stations;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

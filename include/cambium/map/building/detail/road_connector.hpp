@@ -32,7 +32,7 @@
 ///
 /// The functions before the class answer what it has to know of roads: which lanes leave an end, where their borders
 /// are there, and which lanes of two roads face each other.
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -304,4 +304,4 @@ class RoadConnector {
 };
 
 }  // namespace detail
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

@@ -11,7 +11,7 @@
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/road.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// A lane section shorter than this [m] has no lanes in the map; links lead through it.
 inline constexpr double shortest_section = 1e-6;
@@ -142,4 +142,4 @@ class RoadLinks {
   IdPlaces index_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -19,7 +19,7 @@
 #include "cambium/map/road/lane_type.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Makes a document's road from a plan. Throws `MapError`, see `MapBuilder::add_road`.
 class RoadMaker {
@@ -175,4 +175,4 @@ class RoadMaker {
   opendrive::RoadElement road_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -8,7 +8,7 @@
 #include "cambium/map/building/detail/document_index.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Puts a document back as it was when this was made, unless `keep` is called: for changes that fail half way. Roads
 /// and junctions may be added; existing ones may change only if they are watched.
@@ -64,4 +64,4 @@ class Rollback {
   bool is_kept_ = false;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

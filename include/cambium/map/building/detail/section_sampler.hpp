@@ -24,7 +24,7 @@
 /// Where a geometry or a record begins, there is always a cross-section. Between two of these breaks the curves are
 /// smooth, and an interval is halved until every border and centre line keeps within the tolerances of its chord, in
 /// position and in heading. A step or a kink at a break gets a second cross-section a millimetre before it.
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The cross-section of a road at one station: the reference line and the t of every lane border, from left to right.
 struct CrossSection {
@@ -253,4 +253,4 @@ class SectionSampler {
   std::size_t left_lanes_ = 0;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -11,7 +11,7 @@
 #include "cambium/map/detail/move_records.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Lets a lane section begin at `s` [m] of the road, with the lanes and their links as they were. Nothing to do where
 /// one begins there already, or nearer than `shortest_section`.
@@ -54,4 +54,4 @@ inline void split_roads(OpenDriveDocument& document) {
     if (auto const at = index.find(id); at != index.end()) split_section(document.roads[at->second], s);
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -8,7 +8,7 @@
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The bends of a corridor's centre line. Curvature is averaged over 4 m, so kinks in the file are not bends. A bend
 /// ends where its curvature falls more than a tenth below its sharpest.
@@ -41,4 +41,4 @@ inline void find_bends(LaneCorridor& corridor) {
   for (auto const& bend : corridor.bends) corridor.sharpest_bend = std::max(corridor.sharpest_bend, bend.curvature);
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -11,7 +11,7 @@
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// About how much memory a road corridor takes [B]: its lines, and what it has of lanes that cross it.
 [[nodiscard]] inline std::size_t bytes_of(RoadCorridor const& road) {
@@ -82,4 +82,4 @@ class BuiltCorridors {
   std::size_t unused_bytes_, new_bytes_ = 0;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

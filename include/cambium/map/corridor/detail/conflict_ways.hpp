@@ -11,7 +11,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The fastest that comes to a conflict, followed upstream from there: it brakes for bends, late and hard.
 struct FastestArrival {
@@ -89,4 +89,4 @@ inline void add_ways_beyond(Map const& map, Lane const& lane, bool ahead, double
   return ways;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -21,7 +21,7 @@
 /// leave no room to wait between them are joined (`add_zone`). Two complications remain. A body can reach beyond the
 /// end of its lane, where ways may part: then all of them count (`tracks`). And trying all pairs would be slow: from
 /// the distance of two boxes follows how many places cannot touch, and these are skipped (`places_apart`).
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Adds to `ways` all ways that continue from the end of lane `at` (`ahead`), or lead back from its begin, over `reach`
 /// [m] or as far as there are lanes. `way` is the one so far.
@@ -185,4 +185,4 @@ struct TouchingBodies {
   }
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -32,7 +32,7 @@
 /// Drivers on the other lane see the same conflict from their corridor. Both sides must find the same zones, else two
 /// drivers may wait for each other for ever. That is why zones of two lanes without room to wait between them become
 /// one, also across the borders of lane sections (`unite`).
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Finds the conflicts of a lane corridor whose centre line and pieces are known, see `Conflict`.
 class ConflictFinder {
@@ -392,4 +392,4 @@ class ConflictFinder {
   LaneCorridor const& corridor_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -9,7 +9,7 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The stop signs and lights of a corridor whose pieces are there already. One at a junction, or up to 30 m before it,
 /// counts where the junction begins.
@@ -37,4 +37,4 @@ namespace cambium::map::detail {
   return signals;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

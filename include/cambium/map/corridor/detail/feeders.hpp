@@ -25,7 +25,7 @@
 /// There are four kinds: the overlaps with lanes that merge in or have just split off, the lanes upstream of the
 /// corridor, the lanes that lead to a merge, and the lanes that lead on from its end, where a vehicle may reach back
 /// into the corridor. A stretch of a lane has one image only: a kind named earlier wins.
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Finds the feeders of a lane corridor whose `pieces` are known, see `build_road_corridor`.
 class FeederFinder {
@@ -161,4 +161,4 @@ class FeederFinder {
   LaneCorridor& corridor_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

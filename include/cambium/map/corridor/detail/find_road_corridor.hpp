@@ -24,7 +24,7 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/routing/route.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 inline constexpr double goal_radius = 5.0;  ///< how far from a lane a start or goal may be [m]
 
@@ -225,4 +225,4 @@ class RoadListSearch {
                  "list every road on the way, connecting roads too");
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

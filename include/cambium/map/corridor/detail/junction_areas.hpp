@@ -18,7 +18,7 @@
 #include "cambium/map/lanes/right_of_way.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// `points`' convex hull as a polygon; nothing where it has no area.
 [[nodiscard]] inline std::optional<geometry::Polygon> hull_polygon(std::vector<geometry::Point> points) {
@@ -101,4 +101,4 @@ inline void check_junction(Map const& map, JunctionId id) {
   return conflicts;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

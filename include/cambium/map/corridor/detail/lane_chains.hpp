@@ -12,7 +12,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Whether a vehicle in lane `from` may go on in its successor `to`: not from a drivable lane onto one that is not.
 [[nodiscard]] inline bool may_enter(Lane const& from, Lane const& to) { return to.drivable() || !from.drivable(); }
@@ -123,4 +123,4 @@ struct LaneChain {
   return chains;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

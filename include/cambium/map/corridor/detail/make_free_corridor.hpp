@@ -20,7 +20,7 @@
 #include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The way through `points` with arcs of `radius` [m] at its corners, or smaller ones where there is less room: at a
 /// sharp corner, the border of one leg would block the other.
@@ -131,4 +131,4 @@ class CrossingFinder {
   return road;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

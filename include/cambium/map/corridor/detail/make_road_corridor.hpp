@@ -22,7 +22,7 @@
 #include "cambium/map/corridor/detail/lane_chains.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Joins the lanes of a chain to a lane corridor's lines, widths and pieces.
 class LaneJoiner {
@@ -263,4 +263,4 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
   return route;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

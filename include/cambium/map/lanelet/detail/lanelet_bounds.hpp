@@ -16,7 +16,7 @@
 #include "cambium/map/lanes/overlaps.hpp"
 
 /// The geometry of lanelets: bounds that can be built from, the line between them, and where they cross.
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 using geometry::Point;
 
@@ -341,4 +341,4 @@ inline constexpr std::size_t part_length = 16;  ///< segments
   return false;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -22,7 +22,7 @@
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
 #include "cambium/map/lanelet/lanelet.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Sets of numbers that are united pair by pair.
 class DisjointSets {
@@ -337,4 +337,4 @@ class LaneletNetwork {
   std::set<Link> seen_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -15,7 +15,7 @@
 #include "cambium/map/road/lane_type.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// What a subtype means: the kind of lane, and the speed limits of Lanelet2's German rules within and outside of
 /// towns (GermanTrafficRules and lanelet2_traffic_rules' table) [km/h], 0: none.
@@ -152,4 +152,4 @@ inline void report_lanelet_tags(CountedFindings& counted, pugi::xml_node node, L
   }
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -17,7 +17,7 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Makes lanelets of the drivable lanes of a map, see `lanelets_of`. A lanelet has one limit, and permits changes
 /// everywhere or nowhere: the lanes of a section are cut where these change.
@@ -228,4 +228,4 @@ class LanesAsLanelets {
   std::vector<std::int64_t> further_ids_;        ///< of each lane's parts behind the first
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

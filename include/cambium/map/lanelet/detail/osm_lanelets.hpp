@@ -19,7 +19,7 @@
 #include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The lanelets of a Lanelet2 file, without the rules that they name.
 class OsmLanelets {
@@ -187,4 +187,4 @@ class OsmLanelets {
   }
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -25,7 +25,7 @@
 #include "cambium/map/lanelet/lanelet2_origin.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 using OsmId = std::int64_t;
 
@@ -295,4 +295,4 @@ class OsmWays {
   std::map<Id, OsmWay> ways_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -8,7 +8,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Transverse Mercator of the UTM grid on WGS 84, by Krüger's series of third order (1912; Karney 2011, eqs. 7 to 11
 /// and 35): exact to less than a millimetre within the zones beside that of the origin. Places are relative to the
@@ -56,4 +56,4 @@ class UtmProjection {
   geometry::Point origin_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -13,7 +13,7 @@
 #include "cambium/map/lanes/lane_tree.hpp"
 #include "cambium/map/road/road.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// "from 0 to 30 m, from 50 to 80 m": where `road` has lane `number`; empty where nowhere.
 [[nodiscard]] inline std::string stations_text(Road const& road, int number) {
@@ -98,4 +98,4 @@ namespace cambium::map::detail {
   return std::nullopt;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

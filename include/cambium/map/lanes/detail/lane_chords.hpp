@@ -11,7 +11,7 @@
 #include "cambium/core/portable_math.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// A straight piece that stands for a stretch of a lane's path.
 struct LaneChord {
@@ -91,4 +91,4 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
   return PathStretch{a.on_path.begin + scale * result.begin, a.on_path.begin + scale * result.end};
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

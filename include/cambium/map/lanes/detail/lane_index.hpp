@@ -15,7 +15,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 /// Where a point lies in or beside a lane.
 struct LaneHit {
@@ -200,4 +200,4 @@ class LaneIndex {
 
 }  // namespace detail
 
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

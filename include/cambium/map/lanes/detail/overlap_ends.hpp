@@ -11,7 +11,7 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/overlaps.hpp"
 
-namespace cambium::map {
+namespace cambium::inline v0_1::map {
 
 namespace detail {
 
@@ -164,4 +164,4 @@ class OverlapEnds {
 };
 
 }  // namespace detail
-}  // namespace cambium::map
+}  // namespace cambium::inline v0_1::map

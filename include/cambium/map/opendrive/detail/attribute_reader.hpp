@@ -14,7 +14,7 @@
 #include "cambium/map/opendrive/detail/xml_context.hpp"
 #include "cambium/map/opendrive/element.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Adds an attribute; of several of one name, which XML forbids, the first counts.
 inline void keep_attribute(std::vector<opendrive::Attribute>& attributes, pugi::xml_attribute attribute) {
@@ -255,4 +255,4 @@ void read_container(XmlContext& context, pugi::xml_node node, opendrive::Rest& r
   lose_text(context, node);
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

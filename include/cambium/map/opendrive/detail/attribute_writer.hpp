@@ -15,7 +15,7 @@
 #include "cambium/map/opendrive/detail/xml_text.hpp"
 #include "cambium/map/opendrive/element.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// An attribute with a number; throws `MapError` where it is not finite.
 inline void write_number(XmlText& xml, std::string_view name, double value) {
@@ -122,4 +122,4 @@ void write_container(XmlText& xml, std::string_view name, opendrive::Rest const&
   });
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

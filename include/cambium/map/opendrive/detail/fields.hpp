@@ -19,7 +19,7 @@
 ///   visit.id(name, string, nothing)   as optional; the reader takes white space off its ends; the word `nothing` in
 ///   the
 ///                                     file, unless it is empty, stands for an empty id
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 template <class T, class Struct>
 concept Of = std::same_as<std::remove_const_t<T>, Struct>;
@@ -183,4 +183,4 @@ void fields(auto& visit, Of<opendrive::Controller> auto& x) { visit.needed("id",
 
 void fields(auto& visit, Of<opendrive::Control> auto& x) { visit.needed("signalId", x.signal_id); }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

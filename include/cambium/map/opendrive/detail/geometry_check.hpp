@@ -14,7 +14,7 @@
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 using cambium::detail::rounded_text;
 
@@ -114,4 +114,4 @@ class GeometryCheck {
   Findings& findings_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -6,7 +6,7 @@
 #include "cambium/map/opendrive/detail/attribute_reader.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 inline void report_missing_contact_point(XmlContext& context, pugi::xml_node node) {
   if (*node.attribute("contactPoint").value() == '\0')
@@ -66,4 +66,4 @@ inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opend
   return junction;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -15,7 +15,7 @@
 #include "cambium/map/opendrive/detail/xml_context.hpp"
 #include "cambium/map/opendrive/document.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Sorts records by `key` (a member), and reports where the file has them in another order.
 template <class Record, class Key>
@@ -241,4 +241,4 @@ inline void complete_single_sides(std::vector<opendrive::LaneSection>& sections)
   }
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -11,7 +11,7 @@
 #include "cambium/map/opendrive/detail/attribute_writer.hpp"
 #include "cambium/map/opendrive/lanes.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 inline void write_cubic(XmlText& xml, std::string_view start, CubicRecord const& record) {
   write_number(xml, start, record.s);
@@ -88,4 +88,4 @@ inline void write_lane_section(XmlText& xml, opendrive::LaneSection const& secti
   });
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -16,7 +16,7 @@
 #include "cambium/map/opendrive/detail/fields.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 using cambium::detail::rounded_text;
 
@@ -128,4 +128,4 @@ struct ReadGeometry {
   return true;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

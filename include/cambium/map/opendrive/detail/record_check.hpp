@@ -13,7 +13,7 @@
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/cubic.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Looks at a road's records along s: leaves out, and reports, those that are beyond any road.
 class RecordCheck {
@@ -118,4 +118,4 @@ class RecordCheck {
   std::string ids_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

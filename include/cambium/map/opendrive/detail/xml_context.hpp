@@ -17,7 +17,7 @@
 #include "cambium/core/text.hpp"
 #include "cambium/map/detail/findings.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Turns byte offsets into line numbers. Offsets asked for in rising order cost O(1) on average, others O(log lines).
 class LineTable {
@@ -215,4 +215,4 @@ inline void lose_text(XmlContext& context, pugi::xml_node node) {
     if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) context.lose(node, "text");
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

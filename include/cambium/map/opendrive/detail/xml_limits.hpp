@@ -10,7 +10,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/map/opendrive/reading_limits.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// An XML text that the parser will take for UTF-16 or UTF-32, by its first bytes, as one byte a unit: what is not
 /// ASCII becomes an x. Nothing of a text in another encoding.
@@ -112,4 +112,4 @@ class XmlCounter {
   std::size_t at_ = 0, depth_ = 0, count_ = 0;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -11,7 +11,7 @@
 #include "cambium/map/opendrive/detail/xml_context.hpp"
 #include "cambium/map/opendrive/detail/xml_limits.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// The root element of `text`, which `xml` holds then. Throws `MapError` when the text is not XML, is beyond the
 /// limits, or its root is not `name`; `remedy` says what to give: "give an OpenDRIVE file (usually named .xodr)".
@@ -38,4 +38,4 @@ namespace cambium::map::detail {
   return root;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

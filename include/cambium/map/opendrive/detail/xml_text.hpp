@@ -7,7 +7,7 @@
 
 #include "cambium/core/error.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Grows an XML text element by element, indented by two blanks a level; where an element has text, nothing is added
 /// to what it holds.
@@ -107,4 +107,4 @@ class XmlText {
   bool is_exact_ = false;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// A Gauss-Legendre rule on [-1, 1]: abscissas and weights of its positive half.
 template <std::size_t N>
@@ -30,4 +30,4 @@ template <std::size_t N, class F>
   return half * sum;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

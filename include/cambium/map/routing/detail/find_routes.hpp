@@ -20,7 +20,7 @@
 #include "cambium/map/routing/detail/route_graph.hpp"
 #include "cambium/map/routing/route.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// Places and steps closed to a search.
 struct Closed {
@@ -199,4 +199,4 @@ class YenSearch {
   return reached;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -17,7 +17,7 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/routing/route.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::inline v0_1::map::detail {
 
 /// A way from lane to lane: ahead over the lane's end, or to the side.
 struct LaneStep {
@@ -211,4 +211,4 @@ class RouteGraphBuilder {
   LaneGraph graph_;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::inline v0_1::map::detail

@@ -13,7 +13,7 @@
 #include "cambium/planner/search/search_domain.hpp"
 #include "cambium/planner/search/selection_policy.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 inline constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
 
@@ -317,4 +317,4 @@ class SearchTree {
   std::vector<std::uint32_t> moved_to_, packed_;
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -21,7 +21,7 @@
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/detail/common_road_signals.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// The words of lanelet types that are more than "driving".
 inline constexpr std::pair<std::string_view, map::LaneType> common_road_lane_types[] = {
@@ -404,4 +404,4 @@ class CommonRoadLanes : protected CommonRoadSignals {
   std::map<std::pair<Id, Id>, map::Arrow> turns_;  ///< of a lanelet and one behind it
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -15,7 +15,7 @@
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/detail/common_road_values.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 /// What a sign says by the catalogue of a benchmark's country, "DEU_Test-1_1" or "C-USA_US101-1_1_T-1"; for Zamunda
 /// (ZAM), which is not on Earth, by the American or the German one.
@@ -204,4 +204,4 @@ class CommonRoadSignals : protected CommonRoadValues {
   }
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail

@@ -20,7 +20,7 @@
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/recorded_traffic.hpp"
 
-namespace cambium::detail {
+namespace cambium::inline v0_1::detail {
 
 namespace xml = map::xml;
 
@@ -219,4 +219,4 @@ class CommonRoadValues {
   std::set<std::string> said_;
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium::inline v0_1::detail
