@@ -306,6 +306,15 @@ if(NOT CAMBIUM_QUICK_TESTS AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
     ${PROJECT_SOURCE_DIR}/include ${structure_binary}/two_versions ${CMAKE_CXX_COMPILER} -std=c++20 -isystem ${eigen_dir})
 endif()
 
+# What examples/packaging holds.
+add_timed_test(structure.packaging ${CMAKE_COMMAND} -DFOLDER=${PROJECT_SOURCE_DIR}/examples/packaging -DVERSION=${PROJECT_VERSION}
+  -DBUILD=${structure_binary}/packaging -DCOMPILER=${CMAKE_CXX_COMPILER} -P ${structure_source}/packaging.cmake)
+left_to_all("structure.single_header" "compiles a program with all of <cambium/cambium.hpp> in one file")
+if(NOT CAMBIUM_QUICK_TESTS)
+  add_timed_test(structure.single_header bash ${structure_source}/single_header.sh ${PROJECT_SOURCE_DIR}
+    ${structure_binary}/readme_1.cpp ${structure_binary}/single_header ${CMAKE_CXX_COMPILER} @${compile_flags})
+endif()
+
 # A project that uses cambium, by add_subdirectory and by find_package.
 function(add_consumer name)
   add_timed_test(structure.consumer.${name} ${CMAKE_CTEST_COMMAND} --build-and-test ${structure_source}/consumer ${structure_binary}/consumer_${name}
