@@ -43,6 +43,7 @@ std::vector<Model> behaviors() {
           model<cb::Pedestrian>("Pedestrian"),
           model<cb::Safety>("Safety"),
           model<cb::ConstantAcceleration>("ConstantAcceleration"),
+          model<cb::ConstantTurn>("ConstantTurn"),
           model<cb::StaticTrajectory>("StaticTrajectory"),
           model<cb::ExternalInput>("ExternalInput"),
           model<cb::MotionPrimitives>("MotionPrimitives"),

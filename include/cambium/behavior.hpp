@@ -21,7 +21,7 @@
 /// - actions/: what a search or a planner chooses from: macro actions, proposals
 /// - wrap/: reaction time and errors, RSS, drawn parameters, hypotheses: wrappers of drivers
 /// - pedestrian/: social forces, and crossing lanes
-/// - open_loop/: recorded trajectories, constant acceleration, inputs from a search or from outside
+/// - open_loop/: recorded trajectories, constant acceleration and turn, inputs from a search or from outside
 #pragma once
 
 // First: it says which language and flags cambium needs.
@@ -71,6 +71,7 @@
 #include "cambium/behavior/law/slowing.hpp"
 #include "cambium/behavior/law/stepping_out.hpp"
 #include "cambium/behavior/open_loop/constant_acceleration.hpp"
+#include "cambium/behavior/open_loop/constant_turn.hpp"
 #include "cambium/behavior/open_loop/external_input.hpp"
 #include "cambium/behavior/open_loop/motion_primitives.hpp"
 #include "cambium/behavior/open_loop/static_trajectory.hpp"

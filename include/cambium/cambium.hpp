@@ -17,4 +17,5 @@
 #include "cambium/observer.hpp"
 #include "cambium/planner.hpp"
 #include "cambium/scenario.hpp"
+#include "cambium/tracking.hpp"
 #include "cambium/world.hpp"

@@ -19,9 +19,9 @@ namespace {
 using Includes = std::map<std::string, std::vector<std::string>>;
 
 /// The rooms from top to bottom: a header includes its own room and those above.
-constexpr std::array rooms = {"core",     "geometry",  "map",      "dynamics",   "execution", "behavior",
-                              "observer", "goal",      "world",    "evaluation", "planner",   "scenario",
-                              "viewer",   "benchmark", "snapshot", "learning",   "testing"};
+constexpr std::array rooms = {"core",     "geometry", "map",       "dynamics", "execution",  "behavior",
+                              "observer", "goal",     "world",     "tracking", "evaluation", "planner",
+                              "scenario", "viewer",   "benchmark", "snapshot", "learning",   "testing"};
 constexpr std::size_t no_room = rooms.size();
 /// Families are folders of a room, from top to bottom: a header of a family includes its own family, those above, and
 /// the headers that lie in the room itself.
