@@ -10,6 +10,7 @@
 #include <CLI/CLI.hpp>
 
 #include "cambium/core/json.hpp"
+#include "cambium/core/nearest_names.hpp"
 #include "cambium/core/read_file.hpp"
 
 #include "command_line.hpp"
