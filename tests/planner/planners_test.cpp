@@ -119,8 +119,9 @@ struct Greedy {
     return workspace.drive<MacroActions>(view, dt, step, memory);
   }
   template <class View>
-  [[nodiscard]] auto foresee(View const&, Memory const&, Workspace& workspace,
+  [[nodiscard]] auto foresee(View const& view, Memory const&, Workspace& workspace,
                              std::optional<std::size_t> candidate) const {
+    workspace.check_foreseen(view, candidate);
     std::vector course{workspace.start};
     try_out(workspace, candidate ? *candidate : workspace.chosen.value_or(0), &course);
     return course;
@@ -409,8 +410,13 @@ TEST_CASE_TEMPLATE("its candidates are explained by their paths, and by whom the
   REQUIRE(report.chosen);
   for (std::size_t k = 0; k < report.course.size(); ++k)
     CHECK(report.candidates[*report.chosen].path[k] == report.course[k].agents[slot].state);
+  // There is no such candidate, or it has planned for another agent.
+  CHECK_THROWS_AS((void)planner.foresee(world.observe(ego), {}, workspace, report.candidates.size()), SearchError);
+  CHECK_THROWS_AS((void)planner.foresee(world.observe(beside), {}, workspace, {}), SearchError);
+  CHECK_THROWS_AS(explain(planner, world.observe(beside), {}, workspace, report), SearchError);
   // The workspace and the report must belong together.
   typename Planner::Workspace other;
+  CHECK_THROWS_AS((void)planner.foresee(world.observe(ego), {}, other, {}), SearchError);
   CHECK_THROWS_AS(explain(planner, world.observe(ego), {}, other, report), SearchError);  // it has not planned yet
   put(world, ego, [](auto& state) { state.speed = 10.0; });
   (void)planner.think(world.observe(ego), {}, workspace);
@@ -506,6 +512,8 @@ TEST_CASE("decidedness is the lead over the next best score as a share of their 
   CHECK(decidedness(candidates, 2, [](std::size_t i) { return i == 0; }) == 1.0);  // "b" begins like "c"
   candidates[1].score = 5.0;
   CHECK(decidedness(candidates, 2, any) == 0.0);
+  std::vector<PlannerCandidate> const as_bad{{"a", -41.0}, {"b", -41.01}};
+  CHECK(decidedness(as_bad, 0, any) < 0.01);
   candidates[0].refused = candidates[1].refused = "off road";
   CHECK(decidedness(candidates, 2, any) == 1.0);
 }

@@ -52,6 +52,12 @@ struct CandidateWorkspace {
     return *world;
   }
 
+  /// Throws as `PlannerModel` says of `foresee`, of the agent of `view`.
+  template <class View>
+  void check_foreseen(View const& view, std::optional<std::size_t> candidate) const {
+    detail::check_foreseen(predicted().roster().agents[ego].id, view.id(), candidate, candidates.size());
+  }
+
   /// How many candidates it has compared.
   [[nodiscard]] std::size_t compared() const { return candidates.size(); }
 

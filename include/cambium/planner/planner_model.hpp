@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <limits>
@@ -12,6 +13,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/state.hpp"
+#include "cambium/planner/search/search_result.hpp"
 
 namespace cambium::inline v0_1 {
 
@@ -73,7 +75,8 @@ void is_report(PlannerReport<World, Memory> const&);
 ///
 /// `foresee(view, memory, workspace, candidate)`, called after `plan` or `think` with the same arguments, returns what
 /// it expects: the frames of all agents, now and after each step to the horizon, if ego drives that candidate (by its
-/// number), or as the planner has decided. `workspace.predicted()` is the world to which the frames belong,
+/// number), or as the planner has decided. It throws `SearchError` before the first plan, for a view of another agent,
+/// and for a candidate that there is not. `workspace.predicted()` is the world to which the frames belong,
 /// `workspace.compared()` the number of candidates.
 /// A planner that expects more than one course of the others may have `alternatives(view, memory, workspace,
 /// duration)`: where they may be after `duration` [s] then, as a list of `Alternative`.
@@ -90,8 +93,25 @@ concept PlannerModel = BehaviorModel<P> && std::default_initializable<typename P
   { workspace.compared() } -> std::convertible_to<std::size_t>;
 };
 
+namespace detail {
+/// Throws `SearchError` where `foresee` has no answer: the plan was one for another agent than `asked`, or of fewer
+/// candidates.
+inline void check_foreseen(AgentId planned_for, AgentId asked, std::optional<std::size_t> candidate,
+                           std::size_t compared) {
+  if (planned_for != asked)
+    throw SearchError(
+        "foresee", "the workspace was used last for agent " + to_string(planned_for) + ", not for " + to_string(asked),
+        "pass the view of the agent that has planned");
+  if (candidate && *candidate >= compared)
+    throw SearchError("foresee",
+                      "there is no candidate " + std::to_string(*candidate) + " among " + std::to_string(compared),
+                      "give a smaller number, or none");
+}
+}  // namespace detail
+
 /// The lead of the chosen candidate's score over the best of its rivals that may be driven, as a share of the range of
-/// all scores. 1 if there is no rival, 0 if none is chosen. `is_rival(i)`: whether to drive candidate i would be
+/// all scores, and of at least a twentieth of its score: where all are about as bad, none is clearly best. 1 if there
+/// is no rival, 0 if none is chosen. `is_rival(i)`: whether to drive candidate i would be
 /// another decision. O(candidates).
 template <class IsRival>
 [[nodiscard]] double decidedness(std::span<PlannerCandidate const> candidates, std::optional<std::size_t> chosen,
@@ -105,7 +125,7 @@ template <class IsRival>
     lowest = std::min(lowest, candidates[i].score);
   }
   if (second < lowest) return 1.0;  // there is no rival
-  double const range = std::max(score, second) - lowest;
+  double const range = std::max(std::max(score, second) - lowest, 0.05 * std::abs(score));
   return range > 0.0 ? std::clamp((score - second) / range, 0.0, 1.0) : 0.0;
 }
 

@@ -251,6 +251,7 @@ struct FrenetPlanner {
   template <class View>
   [[nodiscard]] auto foresee(View const& view, Memory const&, Workspace const& workspace,
                              std::optional<std::size_t> candidate) const {
+    workspace.check_foreseen(view, candidate);
     auto course = workspace.frames;
     if (!candidate) candidate = workspace.chosen;
     replace_course(*workspace.world, workspace.ego, course, [&](std::size_t k) {

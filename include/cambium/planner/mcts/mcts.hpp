@@ -199,8 +199,11 @@ struct Mcts {
 
   /// See `PlannerModel`. After a candidate that is not the best, all drive on without a manoeuvre.
   template <class View>
-  [[nodiscard]] auto foresee(View const&, Memory const&, Workspace& workspace,
+  [[nodiscard]] auto foresee(View const& view, Memory const&, Workspace& workspace,
                              std::optional<std::size_t> candidate) const {
+    auto const& domain = workspace.domain();
+    detail::check_foreseen(domain.world().roster().agents[domain.slots()[0]].id, view.id(), candidate,
+                           workspace.compared());
     return workspace.course(candidate);
   }
 

@@ -163,8 +163,9 @@ struct PolicyTreePlanner {
   }
 
   template <class View>
-  [[nodiscard]] auto foresee(View const&, Memory const& memory, Workspace& workspace,
+  [[nodiscard]] auto foresee(View const& view, Memory const& memory, Workspace& workspace,
                              std::optional<std::size_t> candidate) const {
+    workspace.check_foreseen(view, candidate);
     std::vector course{workspace.start};
     auto const& branch = workspace.candidates[candidate.value_or(*workspace.chosen)];
     (void)simulate(workspace, memory, branch.sequence, nullptr, &course, never);

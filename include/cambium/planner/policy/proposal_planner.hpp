@@ -226,6 +226,7 @@ struct ProposalPlanner {
   template <class View>
   [[nodiscard]] auto foresee(View const& view, Memory const& memory, Workspace& workspace,
                              std::optional<std::size_t> candidate) const {
+    workspace.check_foreseen(view, candidate);
     std::vector course{workspace.start};
     auto again = workspace.candidates[candidate.value_or(workspace.best)];
     simulate(workspace, again, memory, &course);
