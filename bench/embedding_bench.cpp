@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
   try {
     auto const map = cb::load_opendrive(map_file).map;
     std::map<std::string, Times> results;
-    for (std::size_t const count : {20, 100})
+    for (std::size_t const count : {std::size_t{20}, std::size_t{100}})
       for (bool const dirty : {false, true}) {
         Traffic traffic(map, count);
         cb::Tracker<> tracker(map);

@@ -345,7 +345,11 @@ class Tracker {
   static void normalize(std::vector<Way>& ways) {
     constexpr double negligible = 0.002;
     constexpr std::size_t most = 6;
-    std::stable_sort(ways.begin(), ways.end(), [](Way const& a, Way const& b) { return a.odds > b.odds; });
+    for (auto way = ways.begin(); way != ways.end(); ++way) {  // they are few, and mostly in order
+      auto const at =
+          std::upper_bound(ways.begin(), way, *way, [](Way const& a, Way const& b) { return a.odds > b.odds; });
+      std::rotate(at, way, way + 1);
+    }
     double sum = 0.0;
     for (auto const& way : ways) sum += way.odds;
     std::erase_if(ways, [&](Way const& way) { return !(way.odds > negligible * sum); });
@@ -443,13 +447,13 @@ class Tracker {
     } else if (is_on_foot(object)) {
       track.motion = track.state.speed < standing ? Motion::stands : Motion::walks;
     } else if (track.ways.empty()) {
-      auto const& [time, x, y, heading, speed] = track.state;
+      auto const& state = track.state;
       bool is_against = false;
-      world_.map().for_each_drivable_near({x, y}, 0.0, [&](map::LaneHit const& hit) {
+      world_.map().for_each_drivable_near({state.x, state.y}, 0.0, [&](map::LaneHit const& hit) {
         double const along = world_.map().lane(hit.lane).path.pose(hit.s).heading;
-        is_against = is_against || std::abs(geometry::angle_difference(heading, along)) > against;
+        is_against = is_against || std::abs(geometry::angle_difference(state.heading, along)) > against;
       });
-      track.motion = speed < standing ? Motion::stands : is_against ? Motion::wrong_way : Motion::off_lanes;
+      track.motion = state.speed < standing ? Motion::stands : is_against ? Motion::wrong_way : Motion::off_lanes;
     } else {
       auto const& way = track.ways.front();
       auto const& line = way.road->corridors[way.place.corridor].center;
