@@ -77,8 +77,8 @@ template <class Text>
   return number.find_first_not_of("-0") == number.find('.');
 }
 
-/// `std::from_chars` for floating point by way of `strtod`. In the C++ locale of `setlocale`, which no other thread may
-/// change meanwhile.
+/// `std::from_chars` for floating point by way of `strtod`. No other thread may call `setlocale`
+/// meanwhile, because it decides on the decimal point.
 template <class Number>
 [[nodiscard]] std::from_chars_result from_chars_by_strtod(char const* begin, char const* end, Number& value) {
   std::string text(begin, end);

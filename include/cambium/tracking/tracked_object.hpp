@@ -64,7 +64,7 @@ struct TrackedObject {
   std::int64_t stamp = 0;  ///< when it was measured [ns], any epoch; 0: when the list was
   double x = unknown, y = unknown;
   double heading = unknown;          ///< of its front
-  double vx = 0.0, vy = 0.0;         ///< velocity in the map frame: see `move_along` for one in the object's frame
+  double vx = 0.0, vy = 0.0;         ///< velocity in the map frame, not in the object's
   double length = 0.0, width = 0.0;  ///< 0: as usual for its class
   ObjectClass kind = ObjectClass::unknown;
   ObjectPoint point = ObjectPoint::box_center;

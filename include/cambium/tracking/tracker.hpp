@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -24,7 +25,6 @@
 #include "cambium/map/map.hpp"
 #include "cambium/tracking/tracked_object.hpp"
 #include "cambium/tracking/verdict.hpp"
-#include "cambium/world/driven_to.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cambium::inline v0_1 {
@@ -101,8 +101,9 @@ class Tracker {
   }
 
   /// Takes a list of objects, measured at `stamp` [ns], any epoch; returns a verdict for each, valid until the next
-  /// update. Throws nothing but `std::bad_alloc`. O(objects log objects), plus finding a route for those that come into
-  /// another lane.
+  /// update. A list that is not newer than the last one is refused: where the clock begins anew, make a new tracker.
+  /// Throws nothing but `std::bad_alloc`. O(objects log objects), plus finding a route for those that come into another
+  /// lane.
   std::span<Verdict const> update(std::int64_t stamp, std::span<TrackedObject const> objects) {
     verdicts_.assign(objects.size(), {});
     for (std::size_t i = 0; i < objects.size(); ++i) verdicts_[i].key = objects[i].key;
@@ -151,7 +152,6 @@ class Tracker {
       double acceleration = 0.0, yaw_rate = 0.0;  ///< smoothed, where the host does not measure them
     } last{};
     double desired_speed = 0.0;  ///< learnt; 0: not yet [m/s]
-    double standing = 0.0;       ///< how long it has stood [s]
     Motion motion = Motion::none;
     std::vector<Way> ways;  ///< the most probable one first; none: it is off the lanes
     typename Set::Memory memory;
@@ -296,7 +296,6 @@ class Tracker {
     track.state.y = at.y();
     track.state.heading = geometry::normalize_angle(heading);
     track.state.speed = std::max(0.0, speed);
-    track.standing = track.state.speed < standing ? track.standing + since : 0.0;
   }
 
   /// The lane of a way at its place.
@@ -479,6 +478,7 @@ class Tracker {
     auto roster = std::make_shared<Roster>();
     static_cast<RosterFacts&>(*roster) = old;
     ++roster->revision;
+    roster->largest_shape = {0.0, 0.0, 0.0, 0.0};
     roster->next_agent_id = next_agent_;
     roster->objects = old.objects;
     roster->object_entries = old.object_entries;

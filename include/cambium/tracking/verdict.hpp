@@ -38,7 +38,7 @@ struct Verdict {
   LaneId lane = none<LaneId>;    ///< that it is in; none off the lanes
   double probability = 1.0;      ///< of the way that the world has for it; others are possible
   bool assumed_size = false;     ///< its size is that of its class
-  bool assumed_heading = false;  ///< its heading is that of its motion, or of its lane
+  bool assumed_heading = false;  ///< its heading is that of its motion, or the last one
 
   friend bool operator==(Verdict const&, Verdict const&) = default;
 };
