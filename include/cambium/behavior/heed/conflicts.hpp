@@ -175,6 +175,8 @@ struct Conflicts {
     bool is_settled = false;      ///< no claim on the conflict at hand can bound it further
     double stops_at = infinite;   ///< a place before which it stops [m]
 
+    /// Whether it still adds to `now`, although no claim can bound it.
+    [[nodiscard]] bool notes() const { return notes_standing && !now.is_full_of_entered(); }
     /// Whether it has entered the section in this step.
     [[nodiscard]] bool enters_now() const { return has_entered && section >= entered; }
   };
@@ -223,7 +225,7 @@ struct Conflicts {
       if (conflict.hull().end < own.s) continue;
       come_to(view, conflict, own);
       own.is_settled = own.is_far || (!own.has_entered && own.stops_at <= own.place);
-      if (own.is_settled && !own.notes_standing && conflict.kind == map::OverlapKind::crossing) continue;
+      if (own.is_settled && !own.notes() && conflict.kind == map::OverlapKind::crossing) continue;
       auto const claims = claims_of(view, conflict, own, limits);
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, other, own, view, dt);
@@ -362,17 +364,10 @@ struct Conflicts {
         if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
         bool const large = is_large(view, user, own);
         if (conflict.zones[own.is_large][large].empty()) return;
-        double const at = way.begin + user.s - way.index_begin;
-        auto const is_behind_slow = [&] {
-          return first() && first()->speed < detail::starting_speed && first()->agent != user.agent;
-        };
-        Other const other{.user = user,
-                          .at = at,
-                          .reach = detail::extra_reach(view, large, user.front, user.rear),
-                          .is_behind_slow = own.waited >= own.patience && is_behind_slow(),
-                          .earliest = way.time_from(at)};
-        bool const is_next = own.notes_standing && first() && first()->agent == user.agent;
-        claims[large] = std::max(claims[large], claim_of(view, conflict, large, other, own, limits, is_next));
+        Other other{.user = user,
+                    .at = way.begin + user.s - way.index_begin,
+                    .reach = detail::extra_reach(view, large, user.front, user.rear)};
+        claims[large] = std::max(claims[large], claim_of(view, conflict, way, large, other, own, limits, first));
       });
     return claims;
   }
@@ -396,18 +391,21 @@ struct Conflicts {
     return first;
   }
 
-  /// The claim of one vehicle on its way.
-  template <class View, class Limits>
-  [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, bool large, Other other, Own& own,
-                               Limits& limits, bool is_next) const {
+  /// The claim of one vehicle on its way. `first()`: the vehicle that is next to enter, known only to one that hardly
+  /// moves.
+  template <class View, class Limits, class First>
+  [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, map::ConflictWay const& on, bool large,
+                               Other& other, Own& own, Limits& limits, First const& first) const {
     auto const& zone = conflict.zones[own.is_large][large];
-    auto const& [user, at, reach, behind_slow, place, earliest] = other;
+    auto const& user = other.user;
+    auto const& reach = other.reach;
+    double const at = other.at;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at, own_way = zone.begin - own.s;
     bool const is_in = way < -detail::over_line, own_is_in = own_way <= -detail::over_line,
                splits = conflict.kind == map::OverlapKind::split;
     bool const may_lead = conflict.kind != map::OverlapKind::crossing && (is_in || splits);
-    if (own.is_settled && !may_lead && !own.notes_standing) return Claim::free;
+    if (!may_lead && (own_is_in || (own.is_settled && !own.notes()))) return Claim::free;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     if (may_lead) {
       double const there = at + conflict.shift, gap = there - user.rear - own.front;
@@ -426,9 +424,10 @@ struct Conflicts {
     auto const section = view.section(user, conflict, large, own.is_large, own.may_meet_large);
     other.place = section ? section->place_to_wait(user.front, detail::lets_go(view, conflict.other_light))
                           : zone.other_begin - reach.front;
+    double const place = other.place;
     bool const has_entered = detail::has_entered(at, user.speed, place);
     auto const key = detail::section_key(user.agent, section ? section->number : 0, own.section);
-    bool const is_first = comes_first(view, user, key, has_entered, is_next, own);
+    bool const is_first = comes_first(view, user, key, has_entered, own, first);
     if (own.is_settled) return Claim::free;
     if (own.has_entered) {
       // Those who come later wait; whoever does not is let through. One at its place is not in the zone: the two sides
@@ -445,23 +444,28 @@ struct Conflicts {
     bool const is_red = is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red;
     if (has_entered || (yields && !is_red && detail::is_about_to_enter(other, own.dt)))
       return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
+    other.is_behind_slow = own.waited >= own.patience && first() && first()->speed < detail::starting_speed &&
+                           first()->agent != user.agent;
     if (detail::goes_first(view, conflict, zone, other, key, way, own_way, own)) return Claim::free;
+    other.earliest = on.time_from(at);
     return claim_in_time(view, conflict, zone, other, way, own_way, own);
   }
 
   /// Whether another vehicle has entered before the own one. Notes it in `Own::now` if it has, or if it stands where
   /// it waits and the own one has just stopped, too.
-  template <class View>
+  template <class View, class First>
   [[nodiscard]] static bool comes_first(View const& view, RoadUser const& user, detail::SectionKey key,
-                                        bool has_entered, bool is_next, Own& own) {
-    bool const had_entered = own.before->holds_entered(key);
+                                        bool has_entered, Own& own, First const& first) {
     if (!has_entered) {
+      if (own.has_entered) return false;
       bool const was_there = own.before->holds(key);
-      bool const stays = own.waited == 0.0 ? is_next && (user.speed < standing_speed || was_there) : was_there;
+      auto const is_next = [&] { return own.notes_standing && first() && first()->agent == user.agent; };
+      bool const stays = own.waited == 0.0 ? (user.speed < standing_speed || was_there) && is_next() : was_there;
       bool const together = own.waited == 0.0 ? !was_there : own.before->holds_together(key);
-      if (!own.has_entered && stays) own.now.add(key, false, together);
+      if (stays) own.now.add(key, false, together);
       return false;
     }
+    bool const had_entered = own.before->holds_entered(key);
     if (!own.has_entered) {
       own.now.add(key, true, false);
       return true;
