@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include "../support/scale.hpp"
@@ -82,6 +83,34 @@ TEST_CASE("a driver brakes for those who will be in its way, as found by trying 
   CHECK(met > 300);
   CHECK(met < 2700);
   CHECK(different < 30);  // where a time misses a limit by less than the step of the trial, or the stop is behind
+}
+
+TEST_CASE("whoever is told by speed and place alone to stay away crosses nobody's way") {
+  std::vector<Point> const points{{0.0, 0.0}, {50.0, 0.0}, {80.0, 20.0}, {80.0, 80.0}};
+  auto const line = cb::geometry::Line::from_points(points);
+  int away = 0, crossing = 0;
+  for (std::uint32_t seed = 0; seed < 20'000; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, 23, 0);
+    cb::State const state{0.0, between(-30.0, 110.0, random), between(-30.0, 110.0, random), between(-3.2, 3.2, random),
+                          between(0.0, 8.0, random)};
+    auto const shape = cb::uniform01(random) < 0.5 ? cb::geometry::pedestrian() : cb::geometry::car();
+    double const s = between(0.0, 90.0, random), horizon = between(0.5, 5.0, random);
+    cb::detail::LaneReach const own{s - 0.9, s + 3.6, -0.9, 0.9};
+    auto const at = line.project({state.x, state.y}, line.find(s));
+    double const farthest = std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+    auto const frenet = cb::geometry::to_frenet(line, state, at);
+    double const stop = cb::detail::stop_before_crossing(own, between(0.0, 16.0, random),
+                                                         cb::detail::lane_reach(line, state, shape, at.segment),
+                                                         frenet.longitudinal_speed, frenet.lateral_speed, horizon);
+    bool const stays_away = cb::detail::CrossingBound{at, state.speed, farthest}.stays_away(own, horizon);
+    if (stays_away || state.speed < cb::detail::least_crossing_speed)
+      CHECK(stop == std::numeric_limits<double>::infinity());
+    away += stays_away;
+    crossing += std::isfinite(stop);
+  }
+  CHECK(away > 10'000);
+  CHECK(crossing > 200);
 }
 
 TEST_CASE_TEMPLATE("a driver who can stop does not hit a pedestrian who steps onto the road", Behavior, ALL_DRIVERS) {
