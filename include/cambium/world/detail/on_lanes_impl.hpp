@@ -18,17 +18,25 @@
 
 namespace cambium::inline v0_1::detail {
 
+/// Sine and cosine of the body's heading relative to `lane` at `s` [m].
+[[nodiscard]] inline portable::SinCos turn_in(map::Lane const& lane, double s, BodyOnRoad const& body) {
+  return portable::sin_cos(body.pose.heading - lane.path.pose(s).heading);
+}
+
 /// The agent's entry in `lane`, at its foot point `s` [m]: its speed along that lane and its extent ahead and behind.
 [[nodiscard]] inline TrafficEntry entry_in(map::Lane const& lane, double s, BodyOnRoad const& body,
-                                           TrafficEntry entry) {
-  double const turn = body.pose.heading - lane.path.pose(s).heading;
-  auto const [sin, cos] = portable::sin_cos(turn);
+                                           portable::SinCos const& turn, TrafficEntry entry) {
+  auto const [sin, cos] = turn;
   auto const reach = geometry::extent_along(body.shape, cos, sin);
   entry.position = lane.index_begin + std::clamp(s, 0.0, lane.length());
   entry.front = reach.positive;
   entry.rear = reach.negative;
   entry.speed = body.speed * cos;
   return entry;
+}
+[[nodiscard]] inline TrafficEntry entry_in(map::Lane const& lane, double s, BodyOnRoad const& body,
+                                           TrafficEntry const& entry) {
+  return entry_in(lane, s, body, turn_in(lane, s, body), entry);
 }
 
 inline void add_in(map::Lane const& lane, TrafficEntry const& entry, ReachingEntries& list) {
@@ -44,13 +52,12 @@ inline void enter_touched(Map const& map, BodyOnRoad const& body, TrafficEntry c
   auto const first = static_cast<std::ptrdiff_t>(list.entries.size());
   map.for_each_drivable_near(at, radius, [&](map::LaneHit const& hit) {
     auto const& lane = map.lane(hit.lane);
-    auto const found = entry_in(lane, hit.s, body, entry);
-    double const turn = body.pose.heading - lane.path.pose(hit.s).heading;
-    auto const [sin, cos] = portable::sin_cos(turn);
-    auto const aside = geometry::extent_along(shape, sin, -cos);
+    auto const turn = turn_in(lane, hit.s, body);
+    auto const aside = geometry::extent_along(shape, turn.sin, -turn.cos);
     auto const widths = lane.widths_at(std::clamp(hit.s, 0.0, lane.length()), hit.segment);
-    bool const is_beside = hit.lateral - aside.negative > widths.left || hit.lateral + aside.positive < -widths.right;
-    if (is_beside || hit.s + found.front < 0.0 || hit.s - found.rear > lane.length()) return;
+    if (hit.lateral - aside.negative > widths.left || hit.lateral + aside.positive < -widths.right) return;
+    auto const found = entry_in(lane, hit.s, body, turn, entry);
+    if (hit.s + found.front < 0.0 || hit.s - found.rear > lane.length()) return;
     auto const is_there = [&](TrafficEntry const& other) {  // added for another foot point on the same lane
       return other.position >= lane.index_begin && other.position <= lane.index_begin + lane.length();
     };
