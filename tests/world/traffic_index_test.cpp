@@ -442,6 +442,40 @@ Count compare_many(std::string const& name, std::shared_ptr<cb::Map const> const
 
 }  // namespace
 
+TEST_CASE("an index prepared for many searches gives the same answers") {
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, 31, 0);
+    auto const count = cb::uniform_index(random, 60);
+    double const spread = std::pow(10.0, between(-1.0, 4.0, random)), outlier = between(0.0, 1.0, random);
+    cb::TrafficIndex plain;
+    plain.refresh(
+        count,
+        [&](Slot slot, cb::ReachingEntries&) {
+          double position = 1000.0 + std::floor(between(0.0, spread, random));  // some are in the same place
+          if (cb::uniform01(random) < 0.1) position = outlier < 0.5 ? infinite : 1e6;
+          return cb::TrafficEntry{position, between(0.3, 9.0, random),       between(0.3, 9.0, random), 5.0,
+                                  slot,     static_cast<std::uint32_t>(slot)};
+        },
+        [](Slot) {
+          return cb::LaneStretch{0.0, 1e6};
+        });
+    auto prepared = plain;
+    prepared.expect_searches();
+    auto const found = [](cb::TrafficIndex const& index, double begin, double end) {
+      std::vector<Slot> slots;
+      index.for_each_in(begin, end, {}, [&](cb::TrafficEntry const& entry, bool) { slots.push_back(entry.slot); });
+      return slots;
+    };
+    for (int i = 0; i < 50; ++i) {
+      double const begin = std::floor(between(950.0, 1100.0 + 1.1 * spread, random)),
+                   end = begin + between(0.0, 40.0, random);
+      CHECK(found(plain, begin, end) == found(prepared, begin, end));
+    }
+    CHECK(found(plain, 0.0, 2e6) == found(prepared, 0.0, 2e6));
+  }
+}
+
 TEST_CASE("front and rear neighbours equal those of a brute-force twin on thousands of random worlds") {
   for (std::string const name : {"merging.xodr", "lane_drop.xodr", "highway.xodr"}) {
     auto const count = compare_many(name, own_map(name), 700, 23);

@@ -58,6 +58,9 @@ struct BehaviorSet {
   /// Whether any behaviour asks for neighbours in the plane; worlds then keep an index of it.
   static constexpr bool looks_around = (detail::looks_around<Behaviors>() || ...);
 
+  /// Whether any behaviour heeds conflicts: it searches in many lanes.
+  static constexpr bool heeds_conflicts = (detail::heeds_conflicts<Behaviors>() || ...);
+
   /// Index of `B` in the set.
   template <class B>
   static constexpr std::size_t index = Any::template place<B>;

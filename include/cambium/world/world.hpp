@@ -422,6 +422,7 @@ class World {
   void refresh_traffic() {
     if (scratch_.fresh) return;
     detail::refresh_traffic(scratch_.traffic, *map_, *roster_, frame_);
+    if constexpr (Set::heeds_conflicts) scratch_.traffic.expect_searches();
     if constexpr (Set::looks_around) detail::refresh_plane(scratch_.plane, *roster_, frame_);
     scratch_.fresh = true;
   }
