@@ -84,6 +84,11 @@ class AgentsBefore {
   /// Whether there is no room for another one that has entered.
   [[nodiscard]] bool is_full_of_entered() const { return entered_ == 127; }
   [[nodiscard]] bool holds(SectionKey key) const { return find(key) < size_; }
+  /// Whether it holds a vehicle with these low bits of its id, in any section.
+  [[nodiscard]] bool may_hold(AgentId id) const {
+    return std::any_of(keys_.begin(), keys_.begin() + size_,
+                       [low = section_key(id, 0, 0)](SectionKey key) { return (key ^ low) >> 16 == 0; });
+  }
   /// Whether it has entered its section.
   [[nodiscard]] bool holds_entered(SectionKey key) const { return has(entered_, find(key)); }
   /// Whether it came in the same step as the driver.

@@ -151,6 +151,8 @@ struct Conflicts {
   static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
   static constexpr double air = 0.3;             // [m] distance kept to a conflict
   static constexpr double longest_wait = 80.0;   // [s] beyond its patience: see `claim_in_time`
+  static constexpr double intruders_deceleration =
+      1.5 * detail::judged_deceleration;  // it will not stop, see `claim_of`
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   /// Where one waits.
@@ -225,7 +227,8 @@ struct Conflicts {
       if (conflict.hull().end < own.s) continue;
       come_to(view, conflict, own);
       own.is_settled = own.is_far || (!own.has_entered && own.stops_at <= own.place);
-      if (own.is_settled && !own.notes() && conflict.kind == map::OverlapKind::crossing) continue;
+      bool const is_over = own.is_settled && !own.notes();
+      if (conflict.kind == map::OverlapKind::crossing && (is_over || is_in_zone(conflict, own))) continue;
       auto const claims = claims_of(view, conflict, own, limits);
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, other, own, view, dt);
@@ -255,6 +258,15 @@ struct Conflicts {
     own.has_entered = detail::has_entered(own.s, own.speed, own.place);
     if (own.has_entered) own.entered_now = std::max(own.entered_now, own.section + 1);
     own.is_near_line = own.is_near_line || own.place - own.s < detail::short_way;
+  }
+
+  /// Whether the own vehicle is in the zone, or beyond it, whatever the size of the other.
+  [[nodiscard]] static bool is_in_zone(map::Conflict const& conflict, Own const& own) {
+    auto const& [normal, large] = conflict.zones[own.is_large];
+    auto const is_before = [&](map::ConflictZone const& zone) {
+      return !zone.empty() && zone.begin - own.s > -detail::over_line;
+    };
+    return !is_before(normal) && !(own.may_meet_large && is_before(large));
   }
 
   /// Sets what is asked only where conflicts are ahead, `first` the nearest one.
@@ -405,7 +417,7 @@ struct Conflicts {
     bool const is_in = way < -detail::over_line, own_is_in = own_way <= -detail::over_line,
                splits = conflict.kind == map::OverlapKind::split;
     bool const may_lead = conflict.kind != map::OverlapKind::crossing && (is_in || splits);
-    if (!may_lead && (own_is_in || (own.is_settled && !own.notes()))) return Claim::free;
+    if (!may_lead && (own_is_in || (own.is_settled && !own.notes()) || lets_wait(other, way, own))) return Claim::free;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     if (may_lead) {
       double const there = at + conflict.shift, gap = there - user.rear - own.front;
@@ -421,6 +433,7 @@ struct Conflicts {
     if (own_is_in) return Claim::free;
     if (insists && conflict.right_of_way == map::RightOfWay::first && !(is_in && user.speed < standing_speed))
       return Claim::free;
+    if (!own.has_entered && own.now.is_full_of_entered()) return own.is_settled ? Claim::free : Claim::blocked;
     auto const section = view.section(user, conflict, large, own.is_large, own.may_meet_large);
     other.place = section ? section->place_to_wait(user.front, detail::lets_go(view, conflict.other_light))
                           : zone.other_begin - reach.front;
@@ -433,13 +446,13 @@ struct Conflicts {
       // Those who come later wait; whoever does not is let through. One at its place is not in the zone: the two sides
       // may round that differently.
       double const until = std::max(way, place - reach.front - at) + detail::over_line;
-      bool const intrudes = until < 0.0 || !cambium::can_stop(user.speed, until, 1.5 * detail::judged_deceleration);
+      bool const intrudes = until < 0.0 || !cambium::can_stop(user.speed, until, intruders_deceleration);
       if (!is_first && !intrudes) return Claim::free;
       bool const stands = user.speed < standing_speed && !is_in;
       if (stands && own.waited > (view.id() < user.agent ? 10.0 : 20.0)) return Claim::free;
       return claim_until_left(view, conflict, zone, other, has_entered, own_way, own);
     }
-    if (own.now.is_full_of_entered()) return Claim::blocked;
+    if (own.now.is_full_of_entered()) return Claim::blocked;  // by this one
     bool const yields = conflict.right_of_way == map::RightOfWay::yields && !detail::is_by_arrival(view, conflict);
     bool const is_red = is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red;
     if (has_entered || (yields && !is_red && detail::is_about_to_enter(other, own.dt)))
@@ -449,6 +462,14 @@ struct Conflicts {
     if (detail::goes_first(view, conflict, zone, other, key, way, own_way, own)) return Claim::free;
     other.earliest = on.time_from(at);
     return claim_in_time(view, conflict, zone, other, way, own_way, own);
+  }
+
+  /// Whether the own vehicle, which has entered, surely lets another one wait that is `way` [m] before the zone: that
+  /// did not come before it, and can stop. Asks for nothing that costs much.
+  [[nodiscard]] static bool lets_wait(Other const& other, double way, Own const& own) {
+    return own.has_entered && !own.enters_now() && way >= -detail::over_line &&
+           cambium::can_stop(other.user.speed, way + detail::over_line, intruders_deceleration) &&
+           !own.before->may_hold(other.user.agent);
   }
 
   /// Whether another vehicle has entered before the own one. Notes it in `Own::now` if it has, or if it stands where

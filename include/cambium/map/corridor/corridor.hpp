@@ -230,7 +230,7 @@ struct LaneCorridor {
     for (auto const& piece : pieces) {
       if (piece.lane != conflict.other) continue;
       for (auto const& own : conflicts) {
-        if (own.lane_end != piece.end || own.other != conflict.lane) continue;
+        if (own.other != conflict.lane || own.lane_end != piece.end) continue;
         auto const& section = own.section[is_large][any_large];
         double const apart = std::abs(own.zones[is_large][other_large].begin + piece.lane_offset -
                                       conflict.zones[other_large][is_large].other_begin);
