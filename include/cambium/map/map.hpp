@@ -253,6 +253,22 @@ class Map {
     return reachable(LaneStation{from}, budget, options);
   }
 
+  /// Builds the roads that worlds and trackers ask for in `area`: from each drivable lane there straight on, as
+  /// `World::add` does without a route, and by all `roads_ahead`. Hold the result: as long as it lives, the map has
+  /// them at once, and no cycle of a planner pays the milliseconds that building them takes. Safe on many threads.
+  [[nodiscard]] std::vector<std::shared_ptr<RoadCorridor const>> prepare(geometry::Box const& area) const {
+    std::vector<std::shared_ptr<RoadCorridor const>> roads;
+    for (auto const id : lanes_in(area)) {
+      if (!lane(id).drivable()) continue;
+      roads.push_back(queries_->road_corridor(*this, queries_->straight_route(*this, id, straight_on).lanes));
+      for (auto& road : queries_->roads_ahead(*this, id)) roads.push_back(std::move(road));
+    }
+    return roads;
+  }
+
+  /// How far `straight_route` leads by default [m].
+  static constexpr double straight_on = 2000.0;
+
   /// The cached `content_hash`; 0 until it is computed.
   [[nodiscard]] std::atomic<std::uint64_t>& known_content_hash() const { return content_hash_; }
 

@@ -53,6 +53,11 @@ class CompiledQueries final : public MapQueries {
   [[nodiscard]] Route straight_route(Map const& map, LaneId from, double max_length) const override {
     return detail::straight_route(map, from, max_length);
   }
+  [[nodiscard]] std::vector<Corridor> roads_ahead(Map const& map, LaneId from) const override {
+    std::vector<Corridor> roads;
+    for (auto const& route : routes_ahead(map, from)) roads.push_back(road_corridor(map, route.lanes));
+    return roads;
+  }
   [[nodiscard]] Corridor road_corridor(Map const& map, std::vector<LaneId> const& route) const override {
     if (auto known = built_.find(route)) return known;
     return built_.add(make_road_corridor(map, route));

@@ -30,8 +30,9 @@ class MapQueries {
                                                   RouteOptions const& options) const = 0;
   [[nodiscard]] virtual std::vector<ReachedLane> reachable(std::span<Lane const> lanes, LaneStation from, double budget,
                                                            RouteOptions const& options) const = 0;
-  /// `straight_route`, and the `build_road_corridor`s.
+  /// `straight_route`, `roads_ahead`, and the `build_road_corridor`s.
   [[nodiscard]] virtual Route straight_route(Map const& map, LaneId from, double max_length) const = 0;
+  [[nodiscard]] virtual std::vector<Corridor> roads_ahead(Map const& map, LaneId from) const = 0;
   [[nodiscard]] virtual Corridor road_corridor(Map const& map, std::vector<LaneId> const& route) const = 0;
   [[nodiscard]] virtual Corridor road_corridor(Map const& map, geometry::Pose const& start, geometry::Point const& goal,
                                                RouteOptions const& options) const = 0;

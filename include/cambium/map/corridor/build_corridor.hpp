@@ -3,6 +3,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -15,7 +16,7 @@ namespace cambium::inline v0_1::map {
 /// The way straight on from `from`: at forks the successor that turns least (within 50 m), of equal ones the smallest
 /// id. Ends at a dead end, where a lane would come again, or with the lane that makes it `max_length` [m] long. Throws
 /// `MapError` for a lane that the map does not have.
-[[nodiscard]] inline Route straight_route(Map const& map, LaneId from, double max_length = 2000.0) {
+[[nodiscard]] inline Route straight_route(Map const& map, LaneId from, double max_length = Map::straight_on) {
   return map.queries().straight_route(map, from, max_length);
 }
 
@@ -40,6 +41,13 @@ namespace cambium::inline v0_1::map {
 /// threads.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
   return map.queries().road_corridor(map, route.lanes);
+}
+
+/// The roads by which traffic in lane `from` may go on: one for each way at the first fork within 120 m, 300 m straight
+/// on from there; where there is no fork, the one straight on. All begin with `from`. Throws `MapError` for a lane that
+/// the map does not have. The map remembers them as above; building one takes up to a millisecond.
+[[nodiscard]] inline std::vector<std::shared_ptr<RoadCorridor const>> roads_ahead(Map const& map, LaneId from) {
+  return map.queries().roads_ahead(map, from);
 }
 
 /// The road corridor along the cheapest route from the lane at `start` (see `Map::nearest_lane`) to a lane at `goal`.

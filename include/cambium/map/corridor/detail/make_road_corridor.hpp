@@ -245,11 +245,15 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
   return road;
 }
 
-/// See `map::straight_route`.
-[[nodiscard]] inline Route straight_route(Map const& map, LaneId from, double max_length) {
+inline void require_start(Map const& map, LaneId from) {
   if (index_of(from) >= map.lanes().size())
     throw MapError("route", "its start, lane " + to_string(from) + ", is not in the map",
                    "see Map::lanes for those it has");
+}
+
+/// See `map::straight_route`.
+[[nodiscard]] inline Route straight_route(Map const& map, LaneId from, double max_length) {
+  require_start(map, from);
   Route route{{from}, map.lane(from).length()};
   std::vector<bool> has_come(map.lanes().size());
   has_come[index_of(from)] = true;
@@ -261,6 +265,35 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
     route.length += map.lane(next).length();
   }
   return route;
+}
+
+/// The routes of `map::roads_ahead`.
+[[nodiscard]] inline std::vector<Route> routes_ahead(Map const& map, LaneId from) {
+  constexpr double forks_within = 120.0, far = 300.0;  // [m]
+  require_start(map, from);
+  std::vector<LaneId> stem, next{from};
+  auto const has_come = [&](LaneId id) { return std::find(stem.begin(), stem.end(), id) != stem.end(); };
+  for (double ahead = -map.lane(from).length(); next.size() == 1 && ahead < forks_within;) {
+    auto const& lane = map.lane(next.front());
+    stem.push_back(lane.id);
+    ahead += lane.length();
+    next = lane.successors;
+    std::erase_if(next, [&](LaneId id) { return !map.lane(id).drivable() || has_come(id); });
+  }
+  bool const forks = next.size() > 1;
+  if (!forks) {
+    next = {stem.back()};
+    stem.pop_back();
+  }
+  std::vector<Route> routes;
+  for (auto const id : next) {
+    auto const on = detail::straight_route(map, id, far).lanes;
+    Route route{stem, 0.0};
+    route.lanes.insert(route.lanes.end(), on.begin(), std::find_if(on.begin(), on.end(), has_come));
+    for (auto const lane : route.lanes) route.length += map.lane(lane).length();
+    routes.push_back(std::move(route));
+  }
+  return routes;
 }
 
 }  // namespace cambium::inline v0_1::map::detail
