@@ -143,6 +143,7 @@ int main(int argc, char** argv) {
   CLI11_PARSE(program, argc, argv);
   try {
     auto const map = cb::load_opendrive(map_file).map;
+    auto const roads = map->prepare(map->bounds());
     std::map<std::string, Times> results;
     for (std::size_t const count : {std::size_t{20}, std::size_t{100}})
       for (bool const dirty : {false, true}) {
@@ -151,14 +152,15 @@ int main(int argc, char** argv) {
         auto const name = "/" + std::to_string(count) + (dirty ? "/dirty" : "/clean");
         std::int64_t stamp = 1'764'580'000'000'000'000;
         double objects = 0.0;
+        std::vector<cb::PredictedState> states;
         for (int i = 0; i < cycles; ++i, stamp += cycle) {
           auto const list = traffic.list(stamp, dirty);
           results["embedding/update" + name].us.push_back(microseconds([&] { tracker.update(stamp, list); }));
-          auto& predicted = results["embedding/predict" + name].us;
-          predicted.push_back(microseconds([&] {
-            auto world = tracker.world();
-            for (int step = 0; step < 30; ++step) static_cast<void>(world.step(0.1));
-          }));
+          for (std::size_t const modes : {std::size_t{1}, std::size_t{6}}) {
+            auto& predicted = results["embedding/predict" + (modes > 1 ? "/6_modes" + name : name)].us;
+            states.resize(std::max(states.size(), modes * tracker.world().size() * 30));
+            predicted.push_back(microseconds([&] { tracker.predict({.modes = modes}, states); }));
+          }
           objects += static_cast<double>(list.size());
           traffic.step();
         }

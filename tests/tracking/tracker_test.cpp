@@ -87,9 +87,9 @@ TEST_CASE("odd objects have verdicts, and those beside them are tracked all the 
   CHECK(refusals == std::vector{R::none, R::not_finite, R::out_of_range, R::out_of_range, R::too_old, R::unlikely,
                                 R::none, R::none, R::duplicate, R::none});
   CHECK(tracker.world().size() == 4);
-  CHECK(verdicts[0].motion == cb::Motion::follows_lane);
+  CHECK(verdicts[0].motion == cb::ObjectMotion::follows_lane);
   CHECK(verdicts[6].assumed_size);
-  CHECK(verdicts[9].motion == cb::Motion::wrong_way);
+  CHECK(verdicts[9].motion == cb::ObjectMotion::wrong_way);
   CHECK(tracker.agent_of({0, 0}) == verdicts[0].agent);
   CHECK_FALSE(tracker.agent_of({0, 2}));
   for (auto const& verdict : verdicts) CHECK(std::string(to_string(verdict.refusal)).size() > 10);
@@ -147,7 +147,7 @@ TEST_CASE("motion goes on as it was measured") {
     walks.kind = stands.kind = cb::ObjectClass::pedestrian;
     Followed on_foot(crossing, walks);
     auto const now = on_foot.now(), then = on_foot.after(3.0);
-    CHECK(on_foot.verdict.motion == cb::Motion::walks);
+    CHECK(on_foot.verdict.motion == cb::ObjectMotion::walks);
     CHECK(then.y - now.y == doctest::Approx(3.6).epsilon(0.05));
     CHECK(then.heading == doctest::Approx(now.heading).epsilon(0.01));
     CHECK(Followed(crossing, stands).after(5.0).y == doctest::Approx(-9.0));
@@ -178,7 +178,7 @@ TEST_CASE("others brake for what comes from beside the lanes") {
   auto car = object(1, 100.0, -5.25, 0.0, 14.0), leaves = object(2, 135.0, -11.0, 1.5, 1.5);
   leaves.kind = cb::ObjectClass::car;
   auto const verdicts = tracker.update(system_clock, std::vector{car, leaves});
-  CHECK(verdicts[1].motion == cb::Motion::off_lanes);
+  CHECK(verdicts[1].motion == cb::ObjectMotion::off_lanes);
   auto const agent = verdicts[0].agent;
   CHECK(later(tracker.world(), 2.0).state(agent).speed < 13.0);
 }

@@ -23,6 +23,10 @@
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/tracking/detail/rollouts.hpp"
+#include "cambium/tracking/detail/track.hpp"
+#include "cambium/tracking/detail/ways.hpp"
+#include "cambium/tracking/predicted_modes.hpp"
 #include "cambium/tracking/tracked_object.hpp"
 #include "cambium/tracking/verdict.hpp"
 #include "cambium/world/world.hpp"
@@ -111,7 +115,7 @@ class Tracker {
       for (auto& verdict : verdicts_) verdict.refusal = Refusal::too_old;
       return verdicts_;
     }
-    double const gap = begins_ ? 0.0 : seconds(stamp, stamp_);
+    double const gap = begins_ ? 0.0 : detail::seconds_between(stamp_, stamp);
     if (begins_ || gap > options_.longest_gap) {
       tracks_.clear();
       begin_ = begins_ ? stamp : begin_;
@@ -129,39 +133,27 @@ class Tracker {
     return verdicts_;
   }
 
+  /// Predicts the tracked objects into `states`, an array `[mode, object, step]` of the caller's; each of
+  /// `request.modes` modes is a rollout of the world. In a mode an object follows one of its ways, or deviates from
+  /// what is expected of it (`Maneuver`). `choose(key, mode)` may return another behaviour of the world's set that
+  /// drives the object in that mode, as `std::optional<World::Behavior>`. An object that is not tracked has no mode,
+  /// and zeros as states. Rollouts take steps of up to 0.3 s; states between are interpolated. The same request gives
+  /// the same bits. Throws `ParameterError` (nothing is written) if a number of the request is out of range or `states`
+  /// is too small. O(modes * agents * steps), plus O(agents * modes) for a joint one.
+  template <class Choose>
+  PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states, Choose const& choose) {
+    return rollouts_.predict(
+        world_, tracks_, off_lanes_, request, states, [&](Track const& track) { return driver_of(track); }, choose);
+  }
+  PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states) {
+    return predict(request, states, [](auto const&, auto const&) { return std::optional<typename World::Behavior>{}; });
+  }
+
  private:
   using State = typename World::State;
   using Set = typename World::Behaviors;
 
-  /// A road that an object may follow, its place there, and how probable that is.
-  struct Way {
-    std::shared_ptr<map::RoadCorridor const> road;
-    map::LanePlace place;
-    double odds = 1.0;
-  };
-
-  struct Track {
-    ObjectKey key;
-    AgentId agent;
-    std::int64_t seen = 0;
-    State state{};              ///< measured, or predicted since
-    double acceleration = 0.0;  ///< likewise [m/s^2]
-    geometry::Shape shape;
-    struct {
-      double heading = 0.0, speed = 0.0;          ///< as measured last, of its front
-      double acceleration = 0.0, yaw_rate = 0.0;  ///< smoothed, where the host does not measure them
-    } last{};
-    double desired_speed = 0.0;  ///< learnt; 0: not yet [m/s]
-    Motion motion = Motion::none;
-    std::vector<Way> ways;  ///< the most probable one first; none: it is off the lanes
-    typename Set::Memory memory;
-  };
-
-  [[nodiscard]] static double seconds(std::int64_t later, std::int64_t sooner) {
-    // As unsigned numbers the difference cannot overflow.
-    auto const apart = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(sooner);
-    return later >= sooner ? 1e-9 * static_cast<double>(apart) : -1e-9 * static_cast<double>(~apart + 1);
-  }
+  using Track = detail::Track<World>;
 
   /// Moves the world, and with it what is predicted of each track, on by `gap` [s].
   void advance(double gap) {
@@ -185,7 +177,7 @@ class Tracker {
   }
 
   void take(TrackedObject const& object, Verdict& verdict) {
-    verdict.refusal = fault_of(object);
+    verdict.refusal = detail::fault_of(object, stamp_, options_.existence);
     if (verdict.refusal != Refusal::none) return;
     auto const [entry, is_new] = places_.try_emplace(object.key, tracks_.size());
     if (is_new) {
@@ -196,255 +188,28 @@ class Tracker {
       return;
     }
     auto& track = tracks_[entry->second];
-    double const since = is_new ? 0.0 : seconds(stamp_, track.seen);
+    double const since = is_new ? 0.0 : detail::seconds_between(track.seen, stamp_);
     track.seen = stamp_;
-    measure(object, track, since, verdict);
-    find_ways(track, is_on_foot(object), since);
+    track.measure(object, stamp_, detail::seconds_between(begin_, stamp_), since, verdict);
+    if (detail::is_on_foot(object))
+      track.ways.clear();
+    else
+      detail::follow_ways(world_.map(), track.moving(), since, track.ways);
     judge_motion(track, object);
     verdict.agent = track.agent;
     if (!track.ways.empty()) {
-      verdict.lane = lane_of(track.ways.front());
+      verdict.lane = detail::lane_of(track.ways.front());
       verdict.probability = track.ways.front().odds;
     }
   }
 
-  [[nodiscard]] Refusal fault_of(TrackedObject const& object) const {
-    constexpr double farthest = 1e8, fastest = 150.0, latest = 1.0;  // [m], [m/s], [s]
-    if (!std::isfinite(object.x + object.y + object.vx + object.vy)) return Refusal::not_finite;
-    if (std::abs(object.x) > farthest || std::abs(object.y) > farthest ||
-        portable::hypot(object.vx, object.vy) > fastest)
-      return Refusal::out_of_range;
-    if (object.stamp != 0 && std::abs(seconds(stamp_, object.stamp)) > latest) return Refusal::too_old;
-    if (!(object.existence >= options_.existence)) return Refusal::unlikely;
-    return Refusal::none;
-  }
-
-  /// The outline of an object about its reference point, by default that of its class.
-  [[nodiscard]] static geometry::Shape shape_of(TrackedObject const& object, bool& is_assumed) {
-    struct Size {
-      double length, width;
-    };
-    constexpr Size usual[] = {{4.5, 1.8}, {4.5, 1.8}, {10.0, 2.5}, {12.0, 2.5}, {8.0, 2.5},
-                              {2.2, 0.8}, {1.8, 0.6}, {0.5, 0.5},  {0.8, 0.4},  {1.0, 1.0}};
-    constexpr double longest = 60.0, widest = 10.0;  // [m]
-    auto const place = std::min<std::size_t>(static_cast<std::size_t>(object.kind), std::size(usual) - 1);
-    auto const [length, width] = usual[place];
-    auto const known = [&](double size, double most) { return size > 0.05 && size <= most; };
-    is_assumed = !known(object.length, longest) || !known(object.width, widest);
-    double const l = known(object.length, longest) ? object.length : length;
-    double const w = known(object.width, widest) ? object.width : width;
-    bool const has_axles = object.kind < ObjectClass::motorcycle;
-    double const rear = has_axles ? 0.2 * l : 0.5 * l;
-    return {l - rear, rear, 0.5 * w, 0.5 * w};
-  }
-
-  [[nodiscard]] static geometry::Point direction(double heading) {
-    auto const [sin, cos] = portable::sin_cos(heading);
-    return {cos, sin};
-  }
-
-  [[nodiscard]] static bool is_on_foot(TrackedObject const& object) {
-    return object.kind == ObjectClass::pedestrian || object.kind == ObjectClass::animal;
-  }
-
-  /// Takes what was measured into the track, `since` [s] the last time, as the state of the reference point at the
-  /// stamp of the list, with the heading in which it moves.
-  void measure(TrackedObject const& object, Track& track, double since, Verdict& verdict) const {
-    constexpr double moves = 0.5, hardest = 10.0, tightest = 1.5, smoothing = 0.3;  // [m/s], [m/s^2], [rad/s], [-]
-    auto& last = track.last;
-    track.shape = shape_of(object, verdict.assumed_size);
-    double const over_ground = portable::hypot(object.vx, object.vy);
-    double const before = since > 0.0 ? last.heading : std::isfinite(object.heading) ? object.heading : 0.0;
-    double const towards = over_ground > moves ? portable::atan2(object.vy, object.vx) : before;
-    double heading = object.heading;
-    verdict.assumed_heading = object.heading_known == HeadingKnown::no || !std::isfinite(heading);
-    if (verdict.assumed_heading || is_on_foot(object))
-      heading = towards;
-    else if (object.heading_known == HeadingKnown::up_to_sign &&
-             std::abs(geometry::angle_difference(heading, towards)) > 0.5 * geometry::pi)
-      heading += geometry::pi;
-    heading = geometry::normalize_angle(heading);
-    double const along = object.vx * portable::cos(heading) + object.vy * portable::sin(heading);
-    auto const smooth = [&](double from, double measured, double by_difference, double most) {
-      double const value = std::isfinite(measured) ? measured
-                           : since > 0.0           ? from + smoothing * (by_difference - from)
-                                                   : 0.0;
-      return std::clamp(value, -most, most);
-    };
-    double const per = since > 0.0 ? 1.0 / since : 0.0;
-    last.yaw_rate =
-        smooth(last.yaw_rate, object.yaw_rate, geometry::angle_difference(heading, last.heading) * per, tightest);
-    last.acceleration = smooth(last.acceleration, object.acceleration, (along - last.speed) * per, hardest);
-    last.heading = heading;
-    last.speed = along;
-
-    double const late = object.stamp == 0 ? 0.0 : seconds(stamp_, object.stamp), turn = last.yaw_rate * late;
-    geometry::Point at{object.x, object.y};
-    if (object.point == ObjectPoint::box_center) at = at - track.shape.center_offset() * direction(heading);
-    at = at + along * late * direction(heading + 0.5 * turn);
-    double speed = along + last.acceleration * late;
-    heading += turn;
-    track.acceleration = last.acceleration;
-    if (along < -standing) {  // it reverses: its rear goes first
-      heading += geometry::pi;
-      std::swap(track.shape.front, track.shape.rear);
-      speed = -speed;
-      track.acceleration = -track.acceleration;
-    }
-    track.state.time = seconds(stamp_, begin_);
-    track.state.x = at.x();
-    track.state.y = at.y();
-    track.state.heading = geometry::normalize_angle(heading);
-    track.state.speed = std::max(0.0, speed);
-  }
-
-  /// The lane of a way at its place.
-  [[nodiscard]] static LaneId lane_of(Way const& way) {
-    return way.road->corridors[way.place.corridor].pieces[way.place.piece].lane;
-  }
-
-  /// How well a way fits a track, as the logarithm of a likelihood; -infinity where it does not.
-  [[nodiscard]] static double fit(Track const& track, Way const& way) {
-    constexpr double aside = 0.7, aslant = 0.15, turning = 0.15;  // standard deviations [m], [rad], [rad/s]
-    auto const& corridor = way.road->corridors[way.place.corridor];
-    auto const widths = corridor.widths_at(way.place.s, way.place.segment);
-    double const lateral = way.place.lateral, outside = std::max(lateral - widths.left, -widths.right - lateral);
-    if (outside > farthest_outside || std::abs(way.place.heading_error) > most_aslant ||
-        way.place.s > corridor.length())
-      return -std::numeric_limits<double>::infinity();
-    auto const& segment = corridor.center.segments()[way.place.segment];
-    double const turn = track.last.yaw_rate - segment.curvature * track.state.speed;
-    auto const square = [](double x) { return x * x; };
-    return -0.5 * (square(lateral / aside) + square(way.place.heading_error / aslant) + square(turn / turning));
-  }
-
-  /// Follows the ways of a track, or finds new ones where it has come into another lane or fits none.
-  void find_ways(Track& track, bool on_foot, double since) {
-    constexpr double independent = 0.4;  // [s] after which measurements are new evidence
-    if (on_foot) return track.ways.clear();
-    geometry::Pose const pose{track.state.x, track.state.y, track.state.heading};
-    double best = -std::numeric_limits<double>::infinity();
-    std::vector<double> fits;
-    for (auto& way : track.ways) {
-      way.place = detail::seen_place(world_.map(), *way.road, way.place, pose, true);
-      fits.push_back(fit(track, way));
-      best = std::max(best, fits.back());
-    }
-    if (!(best > -std::numeric_limits<double>::infinity())) {
-      track.ways.clear();
-    } else {
-      for (std::size_t i = 0; i < fits.size(); ++i)
-        track.ways[i].odds *= portable::exp(std::min(1.0, since / independent) * (fits[i] - best));
-      normalize(track.ways);
-    }
-    if (track.ways.empty() || lane_of(track.ways.front()) != track.ways.front().road->route.front())
-      track.ways = ways_at(track, pose);
-  }
-
-  static void normalize(std::vector<Way>& ways) {
-    constexpr double negligible = 0.002;
-    constexpr std::size_t most = 6;
-    for (auto way = ways.begin(); way != ways.end(); ++way) {  // they are few, and mostly in order
-      auto const at =
-          std::upper_bound(ways.begin(), way, *way, [](Way const& a, Way const& b) { return a.odds > b.odds; });
-      std::rotate(at, way, way + 1);
-    }
-    double sum = 0.0;
-    for (auto const& way : ways) sum += way.odds;
-    std::erase_if(ways, [&](Way const& way) { return !(way.odds > negligible * sum); });
-    if (ways.size() > most) ways.resize(most);
-    sum = 0.0;
-    for (auto const& way : ways) sum += way.odds;
-    for (auto& way : ways) way.odds /= sum;
-  }
-
-  /// The ways from where a track is. Those that go on like one that it had are as probable as that.
-  [[nodiscard]] std::vector<Way> ways_at(Track const& track, geometry::Pose const& pose) {
-    std::vector<Way> ways;
-    auto const& map = world_.map();
-    map.for_each_drivable_near(pose.position(), farthest_outside, [&](map::LaneHit const& hit) {
-      auto const& lane = map.lane(hit.lane);
-      double const error = geometry::angle_difference(pose.heading, lane.path.pose(hit.s).heading);
-      if (std::abs(error) > most_aslant || hit.s < -1.0 || hit.s > lane.length() + 1.0) return;
-      auto const& roads = roads_from(hit.lane);
-      for (auto const& road : roads) {
-        map::LanePlace hint;
-        auto const& corridor = road->corridors[road->main];
-        hint.segment = corridor.center.find(std::clamp(hit.s, 0.0, corridor.length()));
-        Way way{road, map::locate(*road, road->main, pose, hint), 1.0};
-        double const likelihood = fit(track, way);
-        way.odds = inherited(track.ways, *road, roads.size()) * portable::exp(std::max(-700.0, likelihood));
-        if (way.odds > 0.0 && likelihood > -std::numeric_limits<double>::infinity()) ways.push_back(std::move(way));
-      }
-    });
-    if (!ways.empty()) normalize(ways);
-    return ways;
-  }
-
-  /// The odds before anything was measured there of a road among `forks` that begin in its lane.
-  [[nodiscard]] static double inherited(std::vector<Way> const& before, map::RoadCorridor const& road,
-                                        std::size_t forks) {
-    constexpr double unforeseen = 0.02;
-    double odds = before.empty() ? 1.0 : unforeseen;
-    auto const& route = road.route;
-    for (auto const& way : before) {
-      auto const& old = way.road->route;
-      auto const at = std::find(old.begin(), old.end(), route.front());
-      if (at == old.end()) continue;
-      auto const same = std::mismatch(at, old.end(), route.begin(), route.end());
-      if (same.first == old.end() || same.second == route.end() || same.first - at > 1) odds += way.odds;
-    }
-    return odds / static_cast<double>(forks);
-  }
-
-  /// The roads along the routes from a lane: straight on, and by each way at the next fork. Kept, since building one
-  /// takes a millisecond.
-  [[nodiscard]] std::vector<std::shared_ptr<map::RoadCorridor const>> const& roads_from(LaneId lane) {
-    constexpr double forks_within = 120.0, far = 300.0;  // [m]
-    constexpr std::size_t most_kept = 4096;
-    auto const found = roads_.find(lane);
-    if (found != roads_.end()) return found->second;
-    if (roads_.size() >= most_kept) roads_.clear();
-    auto const& map = world_.map();
-    std::vector<LaneId> stem{lane};
-    double ahead = 0.0;
-    auto const next_of = [&](LaneId id) {
-      auto next = map.lane(id).successors;
-      std::erase_if(next, [&](LaneId after) {
-        return !map.lane(after).drivable() || std::find(stem.begin(), stem.end(), after) != stem.end();
-      });
-      return next;
-    };
-    auto next = next_of(lane);
-    while (next.size() == 1 && ahead < forks_within) {
-      stem.push_back(next.front());
-      ahead += map.lane(next.front()).length();
-      next = next_of(stem.back());
-    }
-    std::vector<map::Route> routes;
-    if (next.size() > 1 && ahead < forks_within) {
-      for (auto const after : next) routes.push_back(map::straight_route(map, after, far));
-    } else {
-      auto const last = stem.back();
-      stem.pop_back();
-      routes.push_back(map::straight_route(map, last, far));
-    }
-    std::vector<std::shared_ptr<map::RoadCorridor const>> roads;
-    for (auto& route : routes) {
-      auto const again = [&](LaneId id) { return std::find(stem.begin(), stem.end(), id) != stem.end(); };
-      route.lanes.erase(std::find_if(route.lanes.begin(), route.lanes.end(), again), route.lanes.end());
-      route.lanes.insert(route.lanes.begin(), stem.begin(), stem.end());
-      roads.push_back(map::build_road_corridor(map, route));
-    }
-    return roads_.emplace(lane, std::move(roads)).first->second;
-  }
-
   void judge_motion(Track& track, TrackedObject const& object) const {
     constexpr double against = 2.3, bends_off = 0.5, ahead = 2.5, drifts = 0.25;  // [rad], [rad], [s], [m/s]
-    if (object.kind == ObjectClass::obstacle || object.is_parked) {
-      track.motion = Motion::stands;
-    } else if (is_on_foot(object)) {
-      track.motion = track.state.speed < standing ? Motion::stands : Motion::walks;
+    track.stays = object.kind == ObjectClass::obstacle || object.is_parked;
+    if (track.stays) {
+      track.motion = ObjectMotion::stands;
+    } else if (detail::is_on_foot(object)) {
+      track.motion = track.state.speed < detail::standing_object ? ObjectMotion::stands : ObjectMotion::walks;
     } else if (track.ways.empty()) {
       auto const& state = track.state;
       bool is_against = false;
@@ -452,7 +217,9 @@ class Tracker {
         double const along = world_.map().lane(hit.lane).path.pose(hit.s).heading;
         is_against = is_against || std::abs(geometry::angle_difference(state.heading, along)) > against;
       });
-      track.motion = state.speed < standing ? Motion::stands : is_against ? Motion::wrong_way : Motion::off_lanes;
+      track.motion = state.speed < detail::standing_object ? ObjectMotion::stands
+                     : is_against                          ? ObjectMotion::wrong_way
+                                                           : ObjectMotion::off_lanes;
     } else {
       auto const& way = track.ways.front();
       auto const& line = way.road->corridors[way.place.corridor].center;
@@ -460,14 +227,16 @@ class Tracker {
           line.pose(std::min(way.place.s + std::max(5.0, ahead * track.state.speed), line.length())).heading;
       double const turn = geometry::angle_difference(there, line.pose(way.place.s).heading);
       double const across = track.state.speed * portable::sin(way.place.heading_error);
-      track.motion = std::abs(turn) > bends_off && way.road->route.size() > 1        ? Motion::turns
-                     : std::abs(across) > drifts && across * way.place.lateral > 0.0 ? Motion::changes_lanes
-                                                                                     : Motion::follows_lane;
+      track.motion = std::abs(turn) > bends_off && way.road->route.size() > 1        ? ObjectMotion::turns
+                     : std::abs(across) > drifts && across * way.place.lateral > 0.0 ? ObjectMotion::changes_lanes
+                                                                                     : ObjectMotion::follows_lane;
     }
   }
 
   void forget_unseen() {
-    std::erase_if(tracks_, [&](Track const& track) { return seconds(stamp_, track.seen) > options_.keep_unseen; });
+    std::erase_if(tracks_, [&](Track const& track) {
+      return detail::seconds_between(track.seen, stamp_) > options_.keep_unseen;
+    });
     index_tracks();
   }
 
@@ -483,7 +252,7 @@ class Tracker {
     roster->objects = old.objects;
     roster->object_entries = old.object_entries;
     roster->free_roads = {{off_lanes_, off_lanes_}};
-    typename World::FrameType frame{seconds(stamp_, begin_), world_.frame().step, {}, roster->revision};
+    typename World::FrameType frame{detail::seconds_between(begin_, stamp_), world_.frame().step, {}, roster->revision};
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       auto& track = tracks_[i];
       auto const before = old.slot_of(track.agent);
@@ -495,7 +264,7 @@ class Tracker {
       if (!goes_on) track.memory = Set::initial_memory(behavior);
       Set::was_set(track.memory);
       if (auto* const turn = std::get_if<ConstantTurn::Memory>(&track.memory); turn != nullptr && track.seen == stamp_)
-        turn->curvature = curvature_of(track);
+        turn->curvature = track.curvature();
       roster->agents.push_back({track.agent, track.shape, road, behavior, {}, {}, {}});
       roster->assume_goal(nullptr, Slot{});
       roster->largest_shape = geometry::joined(roster->largest_shape, track.shape);
@@ -512,16 +281,17 @@ class Tracker {
     learn(*roster);
   }
 
-  [[nodiscard]] static double curvature_of(Track const& track) {
-    constexpr double tightest = 0.2, slow = 1.0;  // [1/m], [m/s]
-    return std::clamp(track.last.yaw_rate / std::max(slow, track.state.speed), -tightest, tightest);
+  [[nodiscard]] typename Set::Any behavior_of(Track const& track) const {
+    if (track.ways.empty() || track.motion == ObjectMotion::stands) return ConstantTurn{};
+    return driver_of(track);
   }
 
-  [[nodiscard]] typename Set::Any behavior_of(Track const& track) const {
-    if (track.ways.empty() || track.motion == Motion::stands) return ConstantTurn{};
+  /// Who drives an object on lanes.
+  [[nodiscard]] Driver driver_of(Track const& track) const {
     auto driver = driver_;
     if (track.desired_speed > 0.0) driver.law.desired_speed = track.desired_speed;
     if constexpr (requires { driver.template heed<SpeedLimit>(); }) {
+      if (track.ways.empty()) return driver;
       auto const& way = track.ways.front();
       double const limit = way.road->corridors[way.place.corridor].speed_limit_at(way.place.s);
       auto& factor = driver.template heed<SpeedLimit>().factor;
@@ -537,15 +307,15 @@ class Tracker {
     std::vector<Slot> staying;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       auto& track = tracks_[i];
-      if (track.seen != stamp_ || track.ways.empty() || track.motion == Motion::stands) continue;
+      if (track.seen != stamp_ || track.ways.empty() || track.motion == ObjectMotion::stands) continue;
       auto const slot = static_cast<Slot>(i);
       auto const view = world_.observe(slot);
       double const speed = track.state.speed;
       auto const ahead = view.ahead({.distance = 150.0});
       bool const hindered = ahead && ahead->gap < near + headway * speed;
-      if (speed < standing) {
+      if (speed < detail::standing_object) {
         if (hindered || track.acceleration > starts || waits_for_right_of_way(view)) continue;
-        track.motion = Motion::stands;
+        track.motion = ObjectMotion::stands;
         staying.push_back(slot);
       } else {
         double const now = std::max(slowest, speed + pickup * std::max(0.0, track.acceleration));
@@ -575,10 +345,6 @@ class Tracker {
                        [&](auto const& conflict) { return is_ahead(conflict.hull().begin); });
   }
 
-  static constexpr double standing = 0.3;          ///< slower counts as standing [m/s]
-  static constexpr double most_aslant = 0.8;       ///< to its lane: more is off the lanes [rad]
-  static constexpr double farthest_outside = 0.5;  ///< of its lane: likewise [m]
-
   World world_;
   TrackerOptions options_;
   Driver driver_;
@@ -588,8 +354,8 @@ class Tracker {
   std::uint32_t next_agent_ = 1;
   std::vector<Track> tracks_;  ///< in the order of their agents
   std::unordered_map<ObjectKey, std::size_t> places_;
-  std::unordered_map<LaneId, std::vector<std::shared_ptr<map::RoadCorridor const>>> roads_;
   std::vector<Verdict> verdicts_;
+  detail::Rollouts<World, Driver> rollouts_;
 };
 
 }  // namespace cambium::inline v0_1

@@ -8,7 +8,7 @@
 namespace cambium::inline v0_1 {
 
 /// How an object moves, and with that, which model predicts it.
-enum class Motion : std::uint8_t {
+enum class ObjectMotion : std::uint8_t {
   follows_lane,
   turns,  ///< follows a lane that bends off at a junction
   changes_lanes,
@@ -33,7 +33,7 @@ enum class Refusal : std::uint8_t {
 struct Verdict {
   ObjectKey key{};
   AgentId agent = none<AgentId>;  ///< in the tracker's world; none if it was refused
-  Motion motion = Motion::none;
+  ObjectMotion motion = ObjectMotion::none;
   Refusal refusal = Refusal::none;
   LaneId lane = none<LaneId>;    ///< that it is in; none off the lanes
   double probability = 1.0;      ///< of the way that the world has for it; others are possible
@@ -43,7 +43,7 @@ struct Verdict {
   friend bool operator==(Verdict const&, Verdict const&) = default;
 };
 
-[[nodiscard]] constexpr char const* to_string(Motion motion) {
+[[nodiscard]] constexpr char const* to_string(ObjectMotion motion) {
   constexpr char const* names[] = {"follows its lane", "turns",     "changes lanes", "stands",
                                    "wrong way",        "off lanes", "walks",         "refused"};
   return names[static_cast<std::uint8_t>(motion)];

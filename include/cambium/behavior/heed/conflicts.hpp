@@ -75,7 +75,7 @@ struct Conflicts {
     using P = Conflicts;
     return parameter_list(
         parameter("look_ahead", &P::look_ahead, "m", Range{0, 1000},
-                  "conflicts within this distance, or within the comfortable braking distance, count"),
+                  "conflicts within this distance, or within the comfortable braking distance, count; 0: none"),
         parameter("time_margin", &P::time_margin, "s", Range{0, 20}, "between two vehicles in one place"),
         parameter("assumed_acceleration", &P::assumed_acceleration, "m/s^2", Range{0, 20},
                   "of others on their way to the conflict"),
@@ -125,6 +125,7 @@ struct Conflicts {
 
   template <class View, class Limits>
   void heed(View const& view, Memory& memory, Limits& limits, double dt) const {
+    if (look_ahead == 0.0) return;
     auto const& law = limits.law();
     Own own;
     own.speed = limits.response().speed();

@@ -1,0 +1,166 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cambium/behavior/heed/conflicts.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/lanes/signals.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/tracking/detail/ways.hpp"
+#include "cambium/tracking/predicted_modes.hpp"
+#include "cambium/tracking/verdict.hpp"
+
+namespace cambium::inline v0_1::detail {
+
+/// Something that an object may do.
+struct Option {
+  double probability = 1.0;
+  Maneuver maneuver = Maneuver::as_expected;
+  std::size_t place = 0;  ///< of its way among the object's, or of its trajectory among those given
+};
+
+/// Throws `ParameterError` if a request cannot be answered into `room` states.
+inline void check_request(PredictionRequest const& request, std::size_t objects, std::size_t room) {
+  constexpr std::size_t most_steps = 10'000, most_modes = 256;
+  auto const refuse = [](char const* what, std::string const& is, char const* remedy) {
+    throw ParameterError(std::string("PredictionRequest.") + what, is, remedy);
+  };
+  if (request.steps < 1 || request.steps > most_steps)
+    refuse("steps", "is " + std::to_string(request.steps), "give a number in [1, 10000]");
+  if (!(request.step > 0.0 && request.step <= 10.0))
+    refuse("step", "is " + std::to_string(request.step) + " s", "give a value in (0, 10] s");
+  if (request.modes < 1 || request.modes > most_modes)
+    refuse("modes", "is " + std::to_string(request.modes), "give a number in [1, 256]");
+  if (auto const needed = request.modes * objects * request.steps; room < needed)
+    throw ParameterError("states", "there is room for " + std::to_string(room) + " of " + std::to_string(needed),
+                         "give an array of modes * objects * steps");
+}
+
+/// From a vehicle's front end to where it waits for others who may go first [m]; infinite without such a place ahead.
+[[nodiscard]] inline double distance_to_yield(map::LaneCorridor const& corridor, double front,
+                                              std::span<map::LightPlan const> lights) {
+  constexpr double far = 60.0;  // [m]
+  auto const is_off = [&](LightId light) {
+    return !is_valid(light) || index_of(light) >= lights.size() || !(lights[index_of(light)].cycle > 0.0);
+  };
+  for (auto const& conflict : corridor.conflicts) {
+    double const distance = conflict.first_hold() - front;
+    if (distance > far) break;
+    if (distance > 0.0 && conflict.kind != map::OverlapKind::split && is_off(conflict.light) &&
+        conflict.right_of_way != map::RightOfWay::first)
+      return distance;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+/// What an object on a lane may do besides what is expected: shares of the probability of its first way; own choice.
+template <class Driver, class Track>
+void add_deviations(Map const& map, std::span<map::LightPlan const> lights, Track const& track,
+                    std::vector<Option>& options) {
+  constexpr double rare = 0.03, drifts = 0.5, turns_back = 0.15, keeps_braking = 0.3, brakes = -1.0;
+  auto const& way = track.ways.front();
+  auto const& corridor = way.road->corridors[way.place.corridor];
+  auto const deviate = [&](Maneuver maneuver, double share) { options.push_back({share, maneuver, 0}); };
+  if constexpr (requires(typename Driver::Memory memory) { memory.lateral.change.target; }) {
+    auto const* const memory = std::get_if<typename Driver::Memory>(&track.memory);
+    if (memory != nullptr && memory->lateral.change.active()) {
+      deviate(Maneuver::keeps_lane, turns_back);
+    } else if (memory != nullptr && !map.in_junction(lane_of(way))) {
+      auto const& lane = map.lane(lane_of(way));
+      auto const& piece = corridor.pieces[way.place.piece];
+      double const s = way.place.s + piece.lane_offset;
+      bool const moves = track.motion == ObjectMotion::changes_lanes, to_left = way.place.heading_error > 0.0;
+      if (is_valid(piece.left) && lane.may_change_left(s))
+        deviate(Maneuver::changes_left, moves && to_left ? drifts : rare);
+      if (is_valid(piece.right) && lane.may_change_right(s))
+        deviate(Maneuver::changes_right, moves && !to_left ? drifts : rare);
+    }
+  }
+  if constexpr (requires(Driver driver) { driver.template heed<Conflicts>(); }) {
+    double const distance = distance_to_yield(corridor, way.place.s + track.shape.front, lights);
+    if (distance < std::numeric_limits<double>::infinity()) {
+      // One who would have to brake hard by now, and does not, is not about to wait.
+      double const needed = 0.5 * track.state.speed * track.state.speed / std::max(1.0, distance);
+      double const late = track.acceleration > -0.5 ? std::clamp(0.5 * (needed - 1.0), 0.0, 1.0) : 0.0;
+      deviate(Maneuver::goes_first, rare + 0.5 * late);
+    }
+  }
+  if (track.acceleration < brakes) deviate(Maneuver::brakes_on, keeps_braking);
+}
+
+/// What an object may do, the most probable first; the probabilities sum to 1.
+template <class Driver, class Track>
+void list_options(Map const& map, std::span<map::LightPlan const> lights, Track const& track,
+                  std::span<GivenTrajectory const> given, std::vector<Option>& options) {
+  constexpr double starts = 0.2;
+  options.clear();
+  for (std::size_t i = 0; i < given.size(); ++i)
+    if (given[i].key == track.key && given[i].probability > 0.0 && std::isfinite(given[i].probability) &&
+        !given[i].states.empty() && std::isfinite(given[i].states[0].x + given[i].states[0].y))
+      options.push_back({given[i].probability, Maneuver::given, i});
+  if (options.empty()) {
+    double expected = 1.0;
+    if (!track.ways.empty() && track.motion == ObjectMotion::stands) {
+      if (!track.stays) options.push_back({starts, Maneuver::starts, 0});
+    } else if (!track.ways.empty()) {
+      add_deviations<Driver>(map, lights, track, options);
+      double const sum = std::accumulate(options.begin(), options.end(), 0.0,
+                                         [](double all, Option const& option) { return all + option.probability; });
+      expected = track.ways.front().odds / (1.0 + std::max(0.0, sum));
+      for (auto& option : options) option.probability *= expected;
+      for (std::size_t i = 1; i < track.ways.size(); ++i)
+        options.push_back({track.ways[i].odds, Maneuver::as_expected, i});
+    }
+    options.push_back({expected, Maneuver::as_expected, 0});
+  }
+  // They are few: no need for a sort that allocates.
+  for (std::size_t i = 1; i < options.size(); ++i)
+    for (std::size_t j = i; j > 0 && options[j].probability > options[j - 1].probability; --j)
+      std::swap(options[j], options[j - 1]);
+}
+
+/// The `most` most probable combinations of one option each of independent objects, whose options are sorted: the
+/// numbers of the options, and the probabilities relative to that of the first one. O(objects * most * options).
+struct Combinations {
+  std::vector<std::vector<std::uint8_t>> chosen;
+  std::vector<double> odds;
+
+  void find(std::span<std::vector<Option> const> objects, std::size_t most) {
+    chosen.assign(1, {});
+    odds.assign(1, 1.0);
+    std::vector<std::pair<double, std::pair<std::size_t, std::uint8_t>>> next;
+    for (auto const& options : objects) {
+      next.clear();
+      for (std::size_t i = 0; i < chosen.size(); ++i)
+        for (std::size_t o = 0; o < std::min<std::size_t>(options.size(), 255); ++o)
+          next.push_back(
+              {odds[i] * options[o].probability / options[0].probability, {i, static_cast<std::uint8_t>(o)}});
+      // Of equal ones, those first whose objects before this one come first: an order that depends on nothing else.
+      std::sort(next.begin(), next.end(), [](auto const& a, auto const& b) {
+        return a.first != b.first ? a.first > b.first : a.second < b.second;
+      });
+      if (next.size() > most) next.resize(most);
+      std::vector<std::vector<std::uint8_t>> combined;
+      odds.clear();
+      for (auto const& [probability, from] : next) {
+        combined.push_back(chosen[from.first]);
+        combined.back().push_back(from.second);
+        odds.push_back(probability);
+      }
+      chosen.swap(combined);
+    }
+  }
+};
+
+}  // namespace cambium::inline v0_1::detail
