@@ -14,7 +14,8 @@
 /// - `ChangeLanes` carries out lane changes safely; a rule such as MOBIL only decides when and to which side.
 ///
 /// The families, each in a folder:
-/// - law/: car-following laws (IDM, improved IDM, ACC), constraints, braking, lane ends: the parts that the others share
+/// - law/: car-following laws (IDM, improved IDM, ACC), constraints, braking, lane ends: the parts that the others
+/// share
 /// - heed/: what a driver heeds besides the road users in its lane
 /// - lateral/: where across the road it drives: keeps its lane, tracks its line, changes lanes by a rule
 /// - driver/: how these make a driver; drivers.hpp has the usual ones (`IdmClassic`, `Mobil`, `UrbanDriver`, ...)

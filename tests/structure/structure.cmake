@@ -155,6 +155,19 @@ if(NOT CAMBIUM_QUICK_TESTS)
   target_link_libraries(structure_two_units_compiled PRIVATE cambium::compiled)
 endif()
 
+# The C interface, from C.
+include(CheckLanguage)
+check_language(C)
+if(CMAKE_C_COMPILER)
+  enable_language(C)
+  add_executable(structure_c_interface EXCLUDE_FROM_ALL ${structure_source}/c_interface.c)
+  set_target_properties(structure_c_interface PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF LINKER_LANGUAGE CXX)
+  target_compile_definitions(structure_c_interface PRIVATE CAMBIUM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_options(structure_c_interface PRIVATE -Wall -Wextra -Wpedantic -Werror)
+  target_link_libraries(structure_c_interface PRIVATE cambium::compiled_predictor)
+  add_program_test(structure.c_interface structure_c_interface $<TARGET_FILE:structure_c_interface>)
+endif()
+
 # All headers at once, free of warnings under each compiler there is; g++ has just compiled them where it is the project's.
 left_to_all("structure.warnings.*" "all headers under g++ and two clangs; here what the tests compile, by the project's compiler")
 set(warning_compilers "")

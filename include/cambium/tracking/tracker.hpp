@@ -28,6 +28,7 @@
 #include "cambium/tracking/detail/ways.hpp"
 #include "cambium/tracking/predicted_modes.hpp"
 #include "cambium/tracking/tracked_object.hpp"
+#include "cambium/tracking/tracker_options.hpp"
 #include "cambium/tracking/verdict.hpp"
 #include "cambium/world/world.hpp"
 
@@ -35,24 +36,6 @@ namespace cambium::inline v0_1 {
 
 /// The world of a tracker: drivers on their lanes, and what goes its own way.
 using TrackedWorld = World<BehaviorSet<UrbanDriver, ConstantTurn>, InterpolateExecution, SingleTrack>;
-
-/// How a `Tracker` tracks.
-struct TrackerOptions {
-  double keep_unseen = 1.0;
-  double existence = 0.1;
-  double longest_gap = 2.0;
-
-  static constexpr char const* name = "tracker";
-  static constexpr auto parameters() {
-    using P = TrackerOptions;
-    return parameter_list(
-        parameter("keep_unseen", &P::keep_unseen, "s", Range{0, 60},
-                  "that an object goes on as predicted when its list lacks it"),
-        parameter("existence", &P::existence, "-", Range{0, 1}, "probability below which an object is refused"),
-        parameter("longest_gap", &P::longest_gap, "s", Range{0.01, 60},
-                  "between lists; after a longer one all objects are new"));
-  }
-};
 
 /// Keeps a world in step with the objects that the host's perception tracks:
 ///
@@ -95,6 +78,17 @@ class Tracker {
   [[nodiscard]] std::optional<AgentId> agent_of(ObjectKey const& key) const {
     auto const found = places_.find(key);
     return found == places_.end() ? std::nullopt : std::optional(tracks_[found->second].agent);
+  }
+
+  /// The objects that are tracked now, in the order of their agents: those of the last list, and those that it lacked.
+  /// Valid until the next update.
+  [[nodiscard]] std::span<ObjectKey const> objects() const { return keys_; }
+
+  /// Who drives an object on lanes, with what was learnt of it; nothing if it is not tracked, or on no lane. O(1).
+  [[nodiscard]] std::optional<Driver> driver_of(ObjectKey const& key) const {
+    auto const found = places_.find(key);
+    if (found == places_.end() || tracks_[found->second].ways.empty()) return std::nullopt;
+    return driver_of(tracks_[found->second]);
   }
 
   /// The turn rate of an agent [rad/s], as measured or by its headings; 0 if there is no such agent. O(agents).
@@ -173,7 +167,11 @@ class Tracker {
 
   void index_tracks() {
     places_.clear();
-    for (std::size_t i = 0; i < tracks_.size(); ++i) places_.emplace(tracks_[i].key, i);
+    keys_.clear();
+    for (std::size_t i = 0; i < tracks_.size(); ++i) {
+      places_.emplace(tracks_[i].key, i);
+      keys_.push_back(tracks_[i].key);
+    }
   }
 
   void take(TrackedObject const& object, Verdict& verdict) {
@@ -354,6 +352,7 @@ class Tracker {
   std::uint32_t next_agent_ = 1;
   std::vector<Track> tracks_;  ///< in the order of their agents
   std::unordered_map<ObjectKey, std::size_t> places_;
+  std::vector<ObjectKey> keys_;
   std::vector<Verdict> verdicts_;
   detail::Rollouts<World, Driver> rollouts_;
 };

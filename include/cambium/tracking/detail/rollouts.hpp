@@ -114,7 +114,8 @@ class Rollouts {
     std::sort(sorted.begin(), sorted.end());
     for (auto const& key : keys_) {
       auto const at = std::lower_bound(sorted.begin(), sorted.end(), std::pair(key, std::size_t{0}));
-      places_.push_back(at != sorted.end() && at->first == key ? at->second : unknown);
+      bool const is_tracked = at != sorted.end() && at->first == key;
+      places_.push_back(is_tracked ? std::exchange(at->second, unknown) : unknown);
     }
   }
 
