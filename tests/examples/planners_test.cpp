@@ -125,18 +125,21 @@ TEST_CASE("the lane change example names the fault in its options") {
   }
 }
 
-TEST_CASE("a stack's own objects and polylines fill a world in at most 40 lines") {
-  std::ifstream source(fs::path(CAMBIUM_SOURCE_DIR) / "examples/embed_in_planner.cpp");
+TEST_CASE("the list of a stack's objects becomes verdicts and modes, in at most 25 lines of the stack's") {
+  std::ifstream source(fs::path(CAMBIUM_SOURCE_DIR) / "examples/embed_in_planner/main.cpp");
   int lines = -1;
   bool inside = false;
   for (std::string line; std::getline(source, line);) {
     inside = (inside || line == "// [embed") && line != "// embed]";
     lines += inside ? 1 : 0;
   }
-  CHECK(lines > 20);
-  CHECK(lines <= 40);
+  CHECK(lines > 15);
+  CHECK(lines <= 30);
   Program const program("embed_in_planner");
-  auto const said = program.output({});
-  CHECK(has(said, "change_left 0   <- chosen"));
-  CHECK(has(said, "agent 12"));
+  auto const said = program.output({"--map", std::string(CAMBIUM_SOURCE_DIR) + "/maps/intersection_4way.xodr"});
+  for (auto const* part : {"follows its lane", "wrong way", "walks", "of a usual size", "as expected", "refused: its position",
+                           "refused: an object before it"})
+    CHECK(has(said, part));
+  program.refuses({"--map", "/no/such.xodr"}, "--map");
+  program.refuses({"--cycles", "0"}, "--cycles");
 }

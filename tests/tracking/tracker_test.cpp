@@ -160,6 +160,7 @@ TEST_CASE("motion goes on as it was measured") {
   {
     INFO("one that reverses goes on backwards");
     Followed reverses(highway, object(1, 100.0, -1.75, 0.0, -2.0));
+    CHECK(reverses.verdict.motion == cb::ObjectMotion::reverses);
     CHECK(reverses.after(1.0).x == doctest::Approx(reverses.now().x - 2.0).epsilon(0.01));
     CHECK(std::abs(cb::geometry::angle_difference(reverses.now().heading, cb::geometry::pi)) < 1e-6);
   }
@@ -203,8 +204,19 @@ TEST_CASE("the same lists give the same bits, and the order of a list does not m
   CHECK(first == run(true));
 }
 
-TEST_CASE("whatever a sensor sends, the tracker answers, and no number in its world is lost") {
-  auto const lists = support::runs(20'000);
+// Costs 2 s of CPU; a minute in `tests/run --all`.
+TEST_CASE("whatever a sensor sends, the tracker answers, and all that it predicts are numbers") {
+#ifdef CAMBIUM_QUICK_TESTS
+  constexpr double share = 0.1;
+#else
+  constexpr double share = 1.0;
+#endif
+  std::uint32_t most = 5, lists = 0;
+  SUBCASE("lists of up to 5") { lists = support::runs(1e6 * share); }
+  SUBCASE("lists of up to 100") {
+    most = 100;
+    lists = support::runs(1e4 * share);
+  }
   auto const map = support::own_map("intersection_4way.xodr");
   cb::RandomStream random(11, 0, 0);
   double const odd[] = {
@@ -214,11 +226,13 @@ TEST_CASE("whatever a sensor sends, the tracker answers, and no number in its wo
                                         : low + cb::uniform01(random) * (high - low);
   };
   cb::Tracker<> tracker(map);
+  std::vector<cb::PredictedState> states;
   std::int64_t stamp = system_clock;
   for (std::uint32_t i = 0; i < lists; ++i) {
-    std::vector<cb::TrackedObject> list(cb::uniform_index(random, 6));
+    std::vector<cb::TrackedObject> list(cb::uniform_index(random, most + 1));
     for (auto& o : list) {
-      o = object(cb::uniform_index(random, 12), number(-90.0, 90.0), number(-90.0, 90.0), number(-4.0, 4.0), 0.0);
+      o = object(cb::uniform_index(random, 2 * most + 2), number(-90.0, 90.0), number(-90.0, 90.0), number(-4.0, 4.0),
+                 0.0);
       o.vx = number(-20.0, 20.0);
       o.vy = number(-20.0, 20.0);
       o.length = number(0.0, 20.0);
@@ -238,10 +252,21 @@ TEST_CASE("whatever a sensor sends, the tracker answers, and no number in its wo
         cb::uniform01(random) < 0.02 ? -cycle : static_cast<std::int64_t>(1e8 * (0.7 + 0.6 * cb::uniform01(random)));
     auto const verdicts = tracker.update(stamp, list);
     REQUIRE(verdicts.size() == list.size());
-    if (i % 8 != 0) continue;
-    auto world = tracker.world();
-    for (int k = 0; k < 10; ++k) REQUIRE(world.step(0.3));
-    for (auto const& record : world.frame().agents) REQUIRE(cb::is_finite(record.state));
+    if (i % 50 != 0) continue;
+    std::vector<cb::PredictedState> course(cb::uniform_index(random, 12));
+    for (auto& state : course)
+      state = {number(-90.0, 90.0), number(-90.0, 90.0), number(-4.0, 4.0), number(-9.0, 30.0)};
+    std::vector<cb::GivenTrajectory> const given{{{0, cb::uniform_index(random, 12)}, course, number(0.0, 1.0)},
+                                                 {{0, 3}, course, number(0.0, 1.0)}};
+    states.assign(3 * tracker.objects().size() * 10, {not_a_number, 0.0, 0.0, 0.0});
+    auto const modes = tracker.predict(
+        {.steps = 10, .step = 0.05 + 0.5 * cb::uniform01(random), .modes = 3, .joint = i % 3 == 0, .given = given},
+        states);
+    for (auto const& [x, y, heading, speed] : states) REQUIRE(std::isfinite(x + y + heading + speed));
+    for (std::size_t o = 0; o < modes.objects.size(); ++o) {
+      double const sum = modes.mode(0, o).probability + modes.mode(1, o).probability + modes.mode(2, o).probability;
+      REQUIRE(sum == doctest::Approx(1.0));
+    }
   }
 }
 

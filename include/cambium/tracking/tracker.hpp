@@ -216,6 +216,7 @@ class Tracker {
         is_against = is_against || std::abs(geometry::angle_difference(state.heading, along)) > against;
       });
       track.motion = state.speed < detail::standing_object ? ObjectMotion::stands
+                     : track.reverses                      ? ObjectMotion::reverses
                      : is_against                          ? ObjectMotion::wrong_way
                                                            : ObjectMotion::off_lanes;
     } else {

@@ -15,6 +15,7 @@ enum class ObjectMotion : std::uint8_t {
   stands,     ///< stays where it is: nothing ahead makes it wait
   wrong_way,  ///< against its lane, on its own course
   off_lanes,  ///< on its own course
+  reverses,   ///< its rear goes first, on its own course
   walks,      ///< on foot, on its own course
   none,       ///< it was refused
 };
@@ -44,8 +45,8 @@ struct Verdict {
 };
 
 [[nodiscard]] constexpr char const* to_string(ObjectMotion motion) {
-  constexpr char const* names[] = {"follows its lane", "turns",     "changes lanes", "stands",
-                                   "wrong way",        "off lanes", "walks",         "refused"};
+  constexpr char const* names[] = {"follows its lane", "turns",    "changes lanes", "stands", "wrong way",
+                                   "off lanes",        "reverses", "walks",         "refused"};
   return names[static_cast<std::uint8_t>(motion)];
 }
 

@@ -15,7 +15,7 @@
 #include "cambium/behavior/heed/conflicts.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/map/corridor/corridor.hpp"
-#include "cambium/map/lanes/signals.hpp"
+#include "cambium/core/ids.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/tracking/detail/ways.hpp"
 #include "cambium/tracking/predicted_modes.hpp"
@@ -47,27 +47,29 @@ inline void check_request(PredictionRequest const& request, std::size_t objects,
                          "give an array of modes * objects * steps");
 }
 
-/// From a vehicle's front end to where it waits for others who may go first [m]; infinite without such a place ahead.
-[[nodiscard]] inline double distance_to_yield(map::LaneCorridor const& corridor, double front,
-                                              std::span<map::LightPlan const> lights) {
+/// From a vehicle's front end to where it waits for others who may go first [m]; infinite where nobody comes.
+template <class View>
+[[nodiscard]] double distance_to_yield(View const& view) {
   constexpr double far = 60.0;  // [m]
-  auto const is_off = [&](LightId light) {
-    return !is_valid(light) || index_of(light) >= lights.size() || !(lights[index_of(light)].cycle > 0.0);
-  };
-  for (auto const& conflict : corridor.conflicts) {
+  double const front = view.place().s + view.shape().front;
+  for (auto const& conflict : view.corridor().conflicts) {
     double const distance = conflict.first_hold() - front;
     if (distance > far) break;
-    if (distance > 0.0 && conflict.kind != map::OverlapKind::split && is_off(conflict.light) &&
-        conflict.right_of_way != map::RightOfWay::first)
-      return distance;
+    if (distance < 0.0 || conflict.kind == map::OverlapKind::split || conflict.right_of_way == map::RightOfWay::first ||
+        (is_valid(conflict.light) && view.light(conflict.light) != map::LightColor::off))
+      continue;
+    bool comes = false;
+    for (auto const& way : conflict.ways)
+      view.on_lane(way.index_begin, way.index_end,
+                   [&](RoadUser const& user) { comes = comes || is_valid(user.agent); });
+    if (comes) return distance;
   }
   return std::numeric_limits<double>::infinity();
 }
 
 /// What an object on a lane may do besides what is expected: shares of the probability of its first way; own choice.
-template <class Driver, class Track>
-void add_deviations(Map const& map, std::span<map::LightPlan const> lights, Track const& track,
-                    std::vector<Option>& options) {
+template <class Driver, class View, class Track>
+void add_deviations(View const& view, Track const& track, std::vector<Option>& options) {
   constexpr double rare = 0.03, drifts = 0.5, turns_back = 0.15, keeps_braking = 0.3, brakes = -1.0;
   auto const& way = track.ways.front();
   auto const& corridor = way.road->corridors[way.place.corridor];
@@ -76,8 +78,8 @@ void add_deviations(Map const& map, std::span<map::LightPlan const> lights, Trac
     auto const* const memory = std::get_if<typename Driver::Memory>(&track.memory);
     if (memory != nullptr && memory->lateral.change.active()) {
       deviate(Maneuver::keeps_lane, turns_back);
-    } else if (memory != nullptr && !map.in_junction(lane_of(way))) {
-      auto const& lane = map.lane(lane_of(way));
+    } else if (memory != nullptr && !view.map().in_junction(lane_of(way))) {
+      auto const& lane = view.map().lane(lane_of(way));
       auto const& piece = corridor.pieces[way.place.piece];
       double const s = way.place.s + piece.lane_offset;
       bool const moves = track.motion == ObjectMotion::changes_lanes, to_left = way.place.heading_error > 0.0;
@@ -88,41 +90,71 @@ void add_deviations(Map const& map, std::span<map::LightPlan const> lights, Trac
     }
   }
   if constexpr (requires(Driver driver) { driver.template heed<Conflicts>(); }) {
-    double const distance = distance_to_yield(corridor, way.place.s + track.shape.front, lights);
+    double const distance = distance_to_yield(view);
     if (distance < std::numeric_limits<double>::infinity()) {
       // One who would have to brake hard by now, and does not, is not about to wait.
       double const needed = 0.5 * track.state.speed * track.state.speed / std::max(1.0, distance);
       double const late = track.acceleration > -0.5 ? std::clamp(0.5 * (needed - 1.0), 0.0, 1.0) : 0.0;
-      deviate(Maneuver::goes_first, rare + 0.5 * late);
+      deviate(Maneuver::goes_first, rare + 0.3 * late);
     }
   }
   if (track.acceleration < brakes) deviate(Maneuver::brakes_on, keeps_braking);
 }
 
-/// What an object may do, the most probable first; the probabilities sum to 1.
-template <class Driver, class Track>
-void list_options(Map const& map, std::span<map::LightPlan const> lights, Track const& track,
-                  std::span<GivenTrajectory const> given, std::vector<Option>& options) {
+/// Whether two ways are one for the next `reach` [m].
+[[nodiscard]] inline bool is_same(Map const& map, Way const& a, Way const& b, double reach) {
+  auto const lane = lane_of(a);
+  auto const &first = a.road->route, &second = b.road->route;
+  auto i = std::find(first.begin(), first.end(), lane), j = std::find(second.begin(), second.end(), lane_of(b));
+  auto const& piece = a.road->corridors[a.place.corridor].pieces[a.place.piece];
+  for (double left = a.place.s + piece.lane_offset + reach; left > 0.0; ++i, ++j) {
+    if (i == first.end() || j == second.end()) return i == first.end() && j == second.end();
+    if (*i != *j) return false;
+    left -= map.lane(*i).length();
+  }
+  return true;
+}
+
+/// Adds those of a track's ways that differ within `horizon` [s], and what else it may do on the first one.
+template <class Driver, class View, class Track>
+void add_ways(View const& view, Track const& track, double horizon, std::vector<Option>& options) {
+  constexpr double gain = 2.0, margin = 10.0;  // [m/s^2], [m]
+  double const reach = (track.state.speed + 0.5 * gain * horizon) * horizon + margin;
+  for (std::size_t i = 0; i < track.ways.size(); ++i) {
+    auto const same = std::find_if(options.begin(), options.end(), [&](Option const& option) {
+      return is_same(view.map(), track.ways[option.place], track.ways[i], reach);
+    });
+    if (same != options.end())
+      same->probability += track.ways[i].odds;
+    else
+      options.push_back({track.ways[i].odds, Maneuver::as_expected, i});
+  }
+  auto const ways = static_cast<std::ptrdiff_t>(options.size());
+  add_deviations<Driver>(view, track, options);
+  double const expected =
+      options.front().probability / std::accumulate(options.begin() + ways, options.end(), 1.0,
+                                                    [](double all, Option const& o) { return all + o.probability; });
+  std::for_each(options.begin() + ways, options.end(), [&](Option& option) { option.probability *= expected; });
+  options.front().probability = expected;
+}
+
+/// What an object may do within `horizon` [s], the most probable first; the probabilities sum to 1. `world` must be up
+/// to date.
+template <class Driver, class World, class Track>
+void list_options(World& world, Slot slot, Track const& track, std::span<GivenTrajectory const> given, double horizon,
+                  std::vector<Option>& options) {
   constexpr double starts = 0.2;
   options.clear();
   for (std::size_t i = 0; i < given.size(); ++i)
     if (given[i].key == track.key && given[i].probability > 0.0 && std::isfinite(given[i].probability) &&
         !given[i].states.empty() && std::isfinite(given[i].states[0].x + given[i].states[0].y))
       options.push_back({given[i].probability, Maneuver::given, i});
-  if (options.empty()) {
-    double expected = 1.0;
-    if (!track.ways.empty() && track.motion == ObjectMotion::stands) {
-      if (!track.stays) options.push_back({starts, Maneuver::starts, 0});
-    } else if (!track.ways.empty()) {
-      add_deviations<Driver>(map, lights, track, options);
-      double const sum = std::accumulate(options.begin(), options.end(), 0.0,
-                                         [](double all, Option const& option) { return all + option.probability; });
-      expected = track.ways.front().odds / (1.0 + std::max(0.0, sum));
-      for (auto& option : options) option.probability *= expected;
-      for (std::size_t i = 1; i < track.ways.size(); ++i)
-        options.push_back({track.ways[i].odds, Maneuver::as_expected, i});
-    }
-    options.push_back({expected, Maneuver::as_expected, 0});
+  bool const stands = track.motion == ObjectMotion::stands;
+  if (options.empty() && !track.ways.empty() && !stands) add_ways<Driver>(world.observe(slot), track, horizon, options);
+  if (options.empty()) options.push_back({});
+  if (stands && !track.stays && !track.ways.empty() && options.front().maneuver == Maneuver::as_expected) {
+    options.front().probability = 1.0 - starts;
+    options.push_back({starts, Maneuver::starts, 0});
   }
   // They are few: no need for a sort that allocates.
   for (std::size_t i = 1; i < options.size(); ++i)

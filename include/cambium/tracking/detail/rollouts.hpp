@@ -66,7 +66,7 @@ class Rollouts {
 
   /// See `Tracker::predict`. `now`: the tracker's world; `driver_of(track)`: who drives it on lanes.
   template <class DriverOf, class Choose>
-  PredictedModes predict(World const& now, std::span<Track const> tracks,
+  PredictedModes predict(World& now, std::span<Track const> tracks,
                          std::shared_ptr<map::RoadCorridor const> const& off_lanes, PredictionRequest const& request,
                          std::span<PredictedState> states, DriverOf const& driver_of, Choose const& choose) {
     auto const count = request.objects.empty() ? tracks.size() : request.objects.size();
@@ -74,7 +74,8 @@ class Rollouts {
     find_objects(tracks, request);
     options_.resize(tracks.size());
     for (std::size_t i = 0; i < tracks.size(); ++i)
-      list_options<Driver>(now.map(), now.roster().lights, tracks[i], request.given, options_[i]);
+      list_options<Driver>(now, static_cast<Slot>(i), tracks[i], request.given,
+                           static_cast<double>(request.steps) * request.step, options_[i]);
     assign_modes(request);
     for (std::size_t mode = 0; mode < request.modes; ++mode) {
       if (is_empty(mode)) {  // so many joint ones there are not
