@@ -152,6 +152,9 @@ std::vector<Unit> units(fs::path const& root) {
   auto const first = program_of(root / "README.md", 1);
   auto const planner = program_of(root / "include/cambium/planner/README.md", 1);
   std::string const compiled = "-DCAMBIUM_COMPILED";
+  all.push_back(
+      {"include/predictor.hpp/compiled", including("cambium/predictor.hpp"), compiled, Budget{1.0, 1.0, 200.0}});
+  all.push_back({"stack/compiled", program_of(root / "README.md", 2), compiled, Budget{1.0, 1.0, 200.0}});
   all.push_back({"planner/compiled", planner, compiled, Budget{8.5, 14.0, 600.0}});
   all.push_back({"first/compiled", first, compiled, Budget{8.5, 11.5, 600.0}});
   all.push_back({"benchmark/compiled", program_of(root / "include/cambium/benchmark/README.md", 1), compiled,

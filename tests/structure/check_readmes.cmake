@@ -1,9 +1,10 @@
-# cmake -DROOT=FOLDER -P check_readmes.cmake: in all READMEs every ```cpp block is a program that runs (see readme.cmake),
+# cmake -DROOT=FOLDER -P check_readmes.cmake: in all READMEs and pages every ```cpp block is a program that runs (see readme.cmake),
 # and every relative link leads to a file or folder.
 cmake_minimum_required(VERSION 3.22)
-foreach(part bench examples include maps tests)
+foreach(part bench include maps tests)
   list(APPEND patterns ${ROOT}/${part}/README.md)
 endforeach()
+list(APPEND patterns ${ROOT}/examples/*.md)
 file(GLOB_RECURSE readmes ${patterns})
 file(GLOB pages ${ROOT}/.github/*.md)
 foreach(readme IN LISTS readmes pages ITEMS ${ROOT}/README.md)

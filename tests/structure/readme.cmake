@@ -1,9 +1,9 @@
 # The programs in all READMEs compile and run, as a user would have them. A program is a ```cpp block behind the line
 # `<!-- runs -->`, or `<!-- runs: REGEX -->` where its output has to match (`.` matches the end of a line, too); it has to
-# exit with 0. Test `readme.FOLDER.N` is the Nth program of FOLDER/README.md, `readme.N` of that at the top; programs run
-# in the repository's folder.
+# exit with 0. Test `readme.FOLDER.N` is the Nth program of FOLDER/README.md, `readme.N` of that at the top,
+# `readme.PAGE.N` of another page of the examples; programs run in the repository's folder.
 file(GLOB_RECURSE readmes CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}
-  ${PROJECT_SOURCE_DIR}/bench/README.md ${PROJECT_SOURCE_DIR}/examples/README.md ${PROJECT_SOURCE_DIR}/include/README.md
+  ${PROJECT_SOURCE_DIR}/bench/README.md ${PROJECT_SOURCE_DIR}/examples/*.md ${PROJECT_SOURCE_DIR}/include/README.md
   ${PROJECT_SOURCE_DIR}/maps/README.md ${PROJECT_SOURCE_DIR}/tests/README.md)
 list(PREPEND readmes README.md)
 
@@ -49,6 +49,9 @@ function(add_readme_programs readme)
   file(READ ${PROJECT_SOURCE_DIR}/${readme} rest)
   get_filename_component(folder ${readme} DIRECTORY)
   get_filename_component(folder "${folder}" NAME)
+  if(NOT readme MATCHES "README.md$")
+    get_filename_component(folder ${readme} NAME_WE)
+  endif()
   set(name readme)
   if(folder)
     string(APPEND name .${folder})

@@ -56,6 +56,9 @@ class Tracker {
   static_assert(
       World::Behaviors::template contains<Driver> && World::Behaviors::template contains<ConstantTurn>,
       "cambium::Tracker<World, Driver>: the world's BehaviorSet must contain Driver and cambium::ConstantTurn");
+  static_assert(
+      requires(Driver driver) { driver.law.desired_speed; },
+      "cambium::Tracker<World, Driver>: Driver must be a cambium::Driver<Law, Lateral, Heeds...>, such as UrbanDriver");
 
   /// Throws `WorldError` without a map, `ParameterError` for options out of range. `driver`: what is not learnt of
   /// drivers.
@@ -289,7 +292,7 @@ class Tracker {
   [[nodiscard]] Driver driver_of(Track const& track) const {
     auto driver = driver_;
     if (track.desired_speed > 0.0) driver.law.desired_speed = track.desired_speed;
-    if constexpr (requires { driver.template heed<SpeedLimit>(); }) {
+    if constexpr (requires { driver.heeds.template get<SpeedLimit>(); }) {
       if (track.ways.empty()) return driver;
       auto const& way = track.ways.front();
       double const limit = way.road->corridors[way.place.corridor].speed_limit_at(way.place.s);

@@ -89,7 +89,7 @@ void add_deviations(View const& view, Track const& track, std::vector<Option>& o
         deviate(Maneuver::changes_right, moves && !to_left ? drifts : rare);
     }
   }
-  if constexpr (requires(Driver driver) { driver.template heed<Conflicts>(); }) {
+  if constexpr (requires(Driver driver) { driver.heeds.template get<Conflicts>(); }) {
     double const distance = distance_to_yield(view);
     if (distance < std::numeric_limits<double>::infinity()) {
       // One who would have to brake hard by now, and does not, is not about to wait.

@@ -44,14 +44,14 @@ void set_from_host(Track const& track, PredictedState const& seen, State& state)
 /// A trajectory with the headings and speeds that are missing, up to the first position that is not finite.
 inline void complete(PredictedState before, std::span<PredictedState const> given, double step, std::size_t steps,
                      std::vector<PredictedState>& states) {
-  constexpr double moves = 0.05, farthest = 1e8, fastest = 150.0;  // [m], [m], [m/s]
+  constexpr double moves = 0.05, farthest = 1e8, highest_speed = 150.0;  // [m], [m], [m/s]
   states.clear();
   for (auto state : given) {
     if (states.size() == steps || !(std::abs(state.x) <= farthest && std::abs(state.y) <= farthest)) break;
     double const dx = state.x - before.x, dy = state.y - before.y, way = portable::hypot(dx, dy);
     if (!std::isfinite(state.heading)) state.heading = way > moves ? portable::atan2(dy, dx) : before.heading;
     if (!std::isfinite(state.speed)) state.speed = way / step;
-    state.speed = std::clamp(state.speed, -fastest, fastest);
+    state.speed = std::clamp(state.speed, -highest_speed, highest_speed);
     states.push_back(state);
     before = state;
   }
@@ -211,7 +211,7 @@ class Rollouts {
         }
         return false;
       case Maneuver::goes_first:
-        if constexpr (requires(Driver driver) { driver.template heed<Conflicts>(); }) {
+        if constexpr (requires(Driver driver) { driver.heeds.template get<Conflicts>(); }) {
           auto driver = driver_of(track);
           driver.template heed<Conflicts>().look_ahead = 0.0;
           drive(driver, has_driver);

@@ -46,9 +46,10 @@ inline constexpr double standing_object = 0.3;  ///< slower counts as standing [
 
 /// What forbids an object in a list of `stamp`.
 [[nodiscard]] inline Refusal fault_of(TrackedObject const& object, std::int64_t stamp, double least_existence) {
-  constexpr double farthest = 1e8, fastest = 150.0, latest = 1.0;  // [m], [m/s], [s]
+  constexpr double farthest = 1e8, highest_speed = 150.0, latest = 1.0;  // [m], [m/s], [s]
   if (!std::isfinite(object.x + object.y + object.vx + object.vy)) return Refusal::not_finite;
-  if (std::abs(object.x) > farthest || std::abs(object.y) > farthest || portable::hypot(object.vx, object.vy) > fastest)
+  if (std::abs(object.x) > farthest || std::abs(object.y) > farthest ||
+      portable::hypot(object.vx, object.vy) > highest_speed)
     return Refusal::out_of_range;
   if (object.stamp != 0 && std::abs(seconds_between(object.stamp, stamp)) > latest) return Refusal::too_old;
   if (!(object.existence >= least_existence)) return Refusal::unlikely;
