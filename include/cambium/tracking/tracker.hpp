@@ -135,8 +135,9 @@ class Tracker {
   /// what is expected of it (`Maneuver`). `choose(key, mode)` may return another behaviour of the world's set that
   /// drives the object in that mode, as `std::optional<World::Behavior>`. An object that is not tracked has no mode,
   /// and zeros as states. Rollouts take steps of up to 0.3 s; states between are interpolated. The same request gives
-  /// the same bits. Throws `ParameterError` (nothing is written) if a number of the request is out of range or `states`
-  /// is too small. O(modes * agents * steps), plus O(agents * modes) for a joint one.
+  /// the same bits. Throws `ParameterError` if a number of the request is out of range or `states` is too small
+  /// (nothing is written then), or a parameter of a chosen behaviour. O(modes * agents * steps), plus O(agents * modes)
+  /// for a joint one.
   template <class Choose>
   PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states, Choose const& choose) {
     return rollouts_.predict(
@@ -279,7 +280,8 @@ class Tracker {
       record.memory = track.memory;
       frame.agents.push_back(std::move(record));
     }
-    world_ = World(world_.shared_map(), roster, std::move(frame));
+    World const made(world_.shared_map(), roster, std::move(frame));
+    world_ = made;  // not moved: it keeps its scratch memory
     learn(*roster);
   }
 

@@ -22,6 +22,7 @@
 #include "cambium/tracking/detail/track.hpp"
 #include "cambium/tracking/detail/ways.hpp"
 #include "cambium/tracking/predicted_modes.hpp"
+#include "cambium/world/detail/check_described.hpp"
 
 namespace cambium::inline v0_1::detail {
 
@@ -157,6 +158,13 @@ class Rollouts {
                                    [](Mode const& m) { return m.maneuver == Maneuver::none; });
   }
 
+  void set_world(World const& world) {
+    if (world_)
+      *world_ = world;  // keeps its scratch memory
+    else
+      world_.emplace(world);
+  }
+
   /// Sets the world to the begin of a mode: each object with its road, its driver and what that remembers.
   template <class DriverOf, class Choose>
   void begin(World const& now, std::span<Track const> tracks, std::shared_ptr<map::RoadCorridor const> const& off_lanes,
@@ -167,11 +175,14 @@ class Rollouts {
     for (std::size_t i = 0; i < tracks.size(); ++i) {
       auto const slot = static_cast<Slot>(i);
       auto const& option = options_[i][taken_[mode * tracks.size() + i]];
+      std::optional<Behavior> const other =
+          choose(tracks[i].key, Mode{option.probability, option.maneuver, none<LaneId>});
+      if (option.maneuver == Maneuver::as_expected && option.place == 0 && !other) continue;
       auto agent = now.roster().agents[slot];
       auto& record = frame.agents[slot];
       bool changed = take(i, tracks[i], option, request, now.map(), off_lanes, driver_of, agent, record);
-      Mode const as{option.probability, option.maneuver, none<LaneId>};
-      if (std::optional<Behavior> const other = choose(tracks[i].key, as)) {
+      if (other) {
+        check_if_described(*other, "Tracker::predict: choose");
         agent.behavior = *other;
         record.memory = World::Behaviors::initial_memory(*other);
         changed = true;
@@ -181,7 +192,7 @@ class Rollouts {
       roster->agents[slot] = std::move(agent);
     }
     if (roster) frame.roster_revision = ++roster->revision;
-    world_.emplace(now.shared_map(), roster ? std::move(roster) : now.shared_roster(), std::move(frame));
+    set_world(World(now.shared_map(), roster ? std::move(roster) : now.shared_roster(), std::move(frame)));
   }
 
   /// Lets an object take an option; returns whether anything in its roster changed.
@@ -364,7 +375,7 @@ class Rollouts {
     for (auto const& r : replays_)
       if (has_ended(r)) pass_on(r.track, frame);
     frame.roster_revision = ++roster->revision;
-    world_.emplace(world_->shared_map(), std::move(roster), std::move(frame));
+    set_world(World(world_->shared_map(), std::move(roster), std::move(frame)));
   }
 
   /// The state at a share of the way between two, `duration` [s] apart: a cubic through both, along their headings
