@@ -12,6 +12,9 @@ include = os.path.join(root, "include", "cambium")
 rooms = sorted(r for r in os.listdir(include) if os.path.isfile(os.path.join(include, r, "README.md")))
 PAGES = {os.path.join(include, room, "README.md"): f"@defgroup {room}" for room in rooms} | {
     os.path.join(root, "README.md"): "@mainpage",
+    os.path.join(include, "README.md"): "@page headers",
+    os.path.join(root, "examples", "embed_in_planner", "into_your_stack.md"): "@page into_your_stack",
+    os.path.join(root, "examples", "embed_in_planner", "coming_from_bark.md"): "@page coming_from_bark",
     os.path.join(root, ".github", "CONTRIBUTING.md"): "@page contributing",
     os.path.join(root, "maps", "README.md"): "@page maps",
     os.path.join(root, "examples", "README.md"): "@page examples",
@@ -23,8 +26,8 @@ PARAMETER = re.compile(r'parameter\(\s*"[^"]*",\s*&(?P<owner>\w+)::(?P<field>\w+
 STRUCT = re.compile(r"^(?:struct|class) (\w+)[^;{]*{\n(.*?)^};", re.S | re.M)
 FIELD = re.compile(r"  [\w:<>, ]+ (\w+)(?: = [^;]*|{[^;]*})?;")
 SHARED = re.compile(r"\bauto (\w+_parameters)\(")  # makes the parameters of several structs
-DETAIL = re.compile(r"^namespace (?:cambium::)?(?:\w+::)?detail {\n.*?^}  // namespace .*\n", re.S | re.M)
-NAMESPACE = re.compile(r"(?:\n((?:///.*\n)+))?^namespace ([\w:]+) {\n(\n?)|^}  // namespace .*\n", re.M)
+DETAIL = re.compile(r"^namespace (?:cambium::)?(?:inline v\w+::)?(?:\w+::)?detail {\n.*?^}  // namespace .*\n", re.S | re.M)
+NAMESPACE = re.compile(r"(?:\n((?:///.*\n)+))?^namespace ([\w:]+(?: v[\w:]+)?) {\n(\n?)|^}  // namespace .*\n", re.M)
 
 
 def sentences(text):

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/map/fwd.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/tracking/predicted_modes.hpp"
 #include "cambium/tracking/tracked_object.hpp"
@@ -16,10 +17,6 @@
 #include "cambium/tracking/verdict.hpp"
 
 namespace cambium::inline v0_1 {
-
-namespace map {
-class Map;
-}
 
 /// Where a Lanelet2 file's map frame begins [degrees], see `map::Lanelet2Origin`.
 struct MapOrigin {
