@@ -26,8 +26,8 @@ PARAMETER = re.compile(r'parameter\(\s*"[^"]*",\s*&(?P<owner>\w+)::(?P<field>\w+
 STRUCT = re.compile(r"^(?:struct|class) (\w+)[^;{]*{\n(.*?)^};", re.S | re.M)
 FIELD = re.compile(r"  [\w:<>, ]+ (\w+)(?: = [^;]*|{[^;]*})?;")
 SHARED = re.compile(r"\bauto (\w+_parameters)\(")  # makes the parameters of several structs
-DETAIL = re.compile(r"^namespace (?:cambium::)?(?:inline v\w+::)?(?:\w+::)?detail {\n.*?^}  // namespace .*\n", re.S | re.M)
-NAMESPACE = re.compile(r"(?:\n((?:///.*\n)+))?^namespace ([\w:]+(?: v[\w:]+)?) {\n(\n?)|^}  // namespace .*\n", re.M)
+DETAIL = re.compile(r"^namespace (?:cambium::)?(?:\w+::)?detail {\n.*?^}  // namespace .*\n", re.S | re.M)
+NAMESPACE = re.compile(r"(?:\n((?:///.*\n)+))?^namespace ([\w:]+) {\n(\n?)|^}  // namespace .*\n", re.M)
 
 
 def sentences(text):
@@ -42,6 +42,8 @@ def sentences(text):
 
 
 def header(text, room, said):
+    text = re.sub(r"cambium::inline v\w+?_\d+", "cambium", text)  # users do not write the version
+
     def struct(found):
         owners = [found[1], *re.findall(r"\b(\w+_parameters)<", found[2])]
         lines = found[2].split("\n")
@@ -120,7 +122,7 @@ def write(path, text):
 # What a concept, a base class or the template of a specialisation asks for is described there.
 DESCRIBED = re.compile(
     r"Member (operator|(parameters|check|plan|observe|sees|sees_object|steps_back|update|select|roll_out|execute|derivative|limited|"
-    r"input|at_goal|drive|foresee|entry|assume|fell_short)\()|of class cambium::(HumanView|map::MapQueries|TrafficDomain|HypothesisDomain) |"
+    r"input|at_goal|drive|heed|look|acceleration|at|foresee|entry|assume|fell_short)\()|of class cambium::(HumanView|map::MapQueries|TrafficDomain|HypothesisDomain) |"
     r"(Member|Compound|struct) [^ ]*<.*>|Compound .*::(Memory|Workspace|State|Input|Statistics) |Member \w+\(\w+ &&\)"
 )
 ACCESSOR = re.compile(r"Member \w+\(\)(?: const)?(?: noexcept)? \(function\)")

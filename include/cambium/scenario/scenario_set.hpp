@@ -34,10 +34,12 @@ enum class Criterion : std::uint8_t {
   discomfort
 };
 
+/// As files write them.
 inline constexpr char const* criterion_names =
     "infeasible|red_light|stop_sign|right_of_way|wrong_way|speeding|solid_line|off_road|imposed_braking|straddling|"
     "discomfort";
 
+/// As files write it.
 [[nodiscard]] inline std::string_view to_string(Criterion criterion) {
   return detail::split(criterion_names, "|")[static_cast<std::size_t>(criterion)];
 }

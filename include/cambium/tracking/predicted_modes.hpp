@@ -72,6 +72,7 @@ struct PredictedModes {
   std::span<Mode const> modes;  ///< [mode, object]
   std::size_t steps = 0;
 
+  /// Mode `mode` of the object at `object` of `objects`.
   [[nodiscard]] Mode const& mode(std::size_t mode, std::size_t object) const {
     return modes[mode * objects.size() + object];
   }
@@ -81,6 +82,7 @@ struct PredictedModes {
   }
 };
 
+/// In words.
 [[nodiscard]] constexpr char const* to_string(Maneuver maneuver) {
   constexpr char const* names[] = {"as expected", "changes left", "changes right", "keeps its lane", "goes first",
                                    "brakes on",   "starts",       "given",         "no such mode"};

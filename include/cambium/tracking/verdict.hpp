@@ -44,6 +44,7 @@ struct Verdict {
   friend bool operator==(Verdict const&, Verdict const&) = default;
 };
 
+/// In words.
 [[nodiscard]] constexpr char const* to_string(ObjectMotion motion) {
   constexpr char const* names[] = {"follows its lane", "turns",    "changes lanes", "stands", "wrong way",
                                    "off lanes",        "reverses", "walks",         "refused"};

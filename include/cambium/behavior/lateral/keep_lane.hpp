@@ -69,6 +69,7 @@ struct KeepLane {
 
     void was_set() { adrift = true; }
     [[nodiscard]] double offset() const { return 1e-3 * aside; }  ///< `aside` [m]
+    /// Steers to `offset` [m], to the left of the middle of the lane.
     void steer_to(double offset) {
       double const mm = std::clamp(std::round(1e3 * offset), -32'000.0, 32'000.0);
       aside = mm == 0.0 ? std::int16_t{1} : static_cast<std::int16_t>(mm);

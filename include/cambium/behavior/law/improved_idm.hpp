@@ -38,6 +38,7 @@ class ImprovedIdmLaw {
  public:
   static constexpr bool asks_acceleration = false;  ///< of leaders
 
+  /// At that speed, of a driver who desires `desired_speed` [m/s].
   template <HasIdmParameters P>
   ImprovedIdmLaw(P const& p, double speed, double desired_speed)
       : terms_(p, desired_speed), speed_(speed), free_(terms_.free_road(speed)) {}
