@@ -1,6 +1,6 @@
 // What a planner stack pays in a cycle of 10 Hz: its objects into the tracker's world, and a prediction of 3 s from
-// there. Traffic on a junction; in the dirty lists a quarter is odd: wrong way, off the lanes, on foot, reversing,
-// refused.
+// there; beside it, a world filled anew by `add`, and its 30 steps. Traffic on a junction; in the dirty lists a quarter
+// is odd: wrong way, off the lanes, on foot, reversing, refused.
 
 #include <algorithm>
 #include <chrono>
@@ -114,6 +114,14 @@ class Traffic {
   cb::RandomStream random_{7, 0, 0};
 };
 
+/// The yardstick: a world that is filled anew in each cycle. Refused objects are left out.
+void add_all(cb::TrackedWorld& world, std::vector<cb::TrackedObject> const& list) {
+  for (auto const& o : list) try {
+      world.add({.position = {o.x, o.y}, .heading = o.heading, .speed = std::hypot(o.vx, o.vy)});
+    } catch (cb::Error const&) {
+    }
+}
+
 struct Times {
   std::vector<double> us;
   [[nodiscard]] double median() {
@@ -156,6 +164,11 @@ int main(int argc, char** argv) {
         for (int i = 0; i < cycles; ++i, stamp += cycle) {
           auto const list = traffic.list(stamp, dirty);
           results["embedding/update" + name].us.push_back(microseconds([&] { tracker.update(stamp, list); }));
+          cb::TrackedWorld anew(map);
+          results["embedding/add" + name].us.push_back(microseconds([&] { add_all(anew, list); }));
+          results["embedding/step" + name].us.push_back(microseconds([&] {
+            for (int step = 0; step < 30; ++step) static_cast<void>(anew.step(0.1));
+          }));
           for (std::size_t const modes : {std::size_t{1}, std::size_t{6}}) {
             auto& predicted = results["embedding/predict" + (modes > 1 ? "/6_modes" + name : name)].us;
             states.resize(std::max(states.size(), modes * tracker.world().size() * 30));

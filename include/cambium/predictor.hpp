@@ -64,7 +64,7 @@ class Predictor {
 
   /// See `Tracker::predict`. `choose` may say what drives an object in a mode; a value that is not finite or out of
   /// range (0 to 70 m/s, 0 to 10 s) counts as 0.
-  using Choose = std::function<std::optional<ObjectModel>(ObjectKey const&, Mode const&)>;
+  using Choose = std::function<std::optional<ObjectModel>(ObjectKey const&, PredictedMode const&)>;
   PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states, Choose const& choose = {});
 
   /// Builds the roads within `radius` [m] of a point, so that no update has to; holds them, and lets go of those that

@@ -88,7 +88,7 @@ CAMBIUM_COLD PredictedModes Predictor::predict(PredictionRequest const& request,
   if (!choose) return parts_->tracker.predict(request, states);
   using Behavior = TrackedWorld::Behavior;
   return parts_->tracker.predict(
-      request, states, [&](ObjectKey const& key, Mode const& mode) -> std::optional<Behavior> {
+      request, states, [&](ObjectKey const& key, PredictedMode const& mode) -> std::optional<Behavior> {
         auto const chosen = choose(key, mode);
         if (!chosen) return std::nullopt;
         auto const within = [](double value, double most) { return value > 0.0 && value <= most; };

@@ -250,7 +250,7 @@ TEST_CASE("the caller chooses objects, and a behaviour for some of them") {
   CHECK(predicted.end(0, 1) == cb::PredictedState{});
   CHECK(predicted.modes.mode(0, 1).maneuver == cb::Maneuver::none);
   using Behavior = cb::TrackedWorld::Behavior;
-  auto const stops = [](cb::ObjectKey const& key, cb::Mode const&) {
+  auto const stops = [](cb::ObjectKey const& key, cb::PredictedMode const&) {
     cb::UrbanDriver slow;
     slow.law.desired_speed = 5.0;
     return key == cb::ObjectKey{0, 2} ? std::optional<Behavior>(slow) : std::nullopt;

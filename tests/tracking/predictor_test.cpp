@@ -59,7 +59,7 @@ TEST_CASE("the predictor behind the firewall tracks and predicts") {
 
   INFO("what drives an object may be chosen");
   auto const choose = [](cb::ObjectModel const& model) {
-    return [model](cb::ObjectKey const& key, cb::Mode const&) {
+    return [model](cb::ObjectKey const& key, cb::PredictedMode const&) {
       return key == cb::key_of("car") ? std::optional(model) : std::nullopt;
     };
   };

@@ -33,12 +33,12 @@ enum class Maneuver : std::uint8_t {
 };
 
 /// One of the ways in which an object may go on.
-struct Mode {
+struct PredictedMode {
   double probability = 0.0;  ///< of all that the object may do; in a joint prediction, that of all objects' modes
   Maneuver maneuver = Maneuver::none;
   LaneId lane = none<LaneId>;  ///< in which it is at the end; none off the lanes
 
-  friend bool operator==(Mode const&, Mode const&) = default;
+  friend bool operator==(PredictedMode const&, PredictedMode const&) = default;
 };
 
 /// A trajectory by which the host predicts an object itself, for instance learned, or of its own vehicle as planned.
@@ -69,11 +69,11 @@ struct PredictionRequest {
 /// or the next update.
 struct PredictedModes {
   std::span<ObjectKey const> objects;
-  std::span<Mode const> modes;  ///< [mode, object]
+  std::span<PredictedMode const> modes;  ///< [mode, object]
   std::size_t steps = 0;
 
   /// Mode `mode` of the object at `object` of `objects`.
-  [[nodiscard]] Mode const& mode(std::size_t mode, std::size_t object) const {
+  [[nodiscard]] PredictedMode const& mode(std::size_t mode, std::size_t object) const {
     return modes[mode * objects.size() + object];
   }
   /// Place of a state in the caller's array; `step` 0 is after one step.

@@ -155,7 +155,7 @@ class Rollouts {
   [[nodiscard]] bool is_empty(std::size_t mode) const {
     auto const first = modes_.begin() + static_cast<std::ptrdiff_t>(mode * keys_.size());
     return mode > 0 && std::all_of(first, first + static_cast<std::ptrdiff_t>(keys_.size()),
-                                   [](Mode const& m) { return m.maneuver == Maneuver::none; });
+                                   [](PredictedMode const& m) { return m.maneuver == Maneuver::none; });
   }
 
   void set_world(World const& world) {
@@ -176,7 +176,7 @@ class Rollouts {
       auto const slot = static_cast<Slot>(i);
       auto const& option = options_[i][taken_[mode * tracks.size() + i]];
       std::optional<Behavior> const other =
-          choose(tracks[i].key, Mode{option.probability, option.maneuver, none<LaneId>});
+          choose(tracks[i].key, PredictedMode{option.probability, option.maneuver, none<LaneId>});
       if (option.maneuver == Maneuver::as_expected && option.place == 0 && !other) continue;
       auto agent = now.roster().agents[slot];
       auto& record = frame.agents[slot];
@@ -416,7 +416,7 @@ class Rollouts {
   std::vector<std::size_t> places_;  ///< of the objects among the tracks; `unknown`: not tracked
   std::vector<std::vector<Option>> options_, asked_;
   Combinations combinations_;
-  std::vector<Mode> modes_;
+  std::vector<PredictedMode> modes_;
   std::vector<std::size_t> taken_;  ///< which option each track takes in each mode
   std::vector<Replay> replays_;
   std::vector<typename World::State> before_;
