@@ -23,6 +23,7 @@
 namespace cambium::inline v0_1 {
 
 struct Predictor::Parts {
+  std::shared_ptr<map::Map const> map;
   Tracker<> tracker;
   std::vector<std::string> warnings{};
   std::mutex holding{};
@@ -68,15 +69,13 @@ CAMBIUM_COLD Predictor::Predictor(std::string const& map_file, TrackerOptions co
   parts_->warnings = std::move(made.warnings);
 }
 CAMBIUM_COLD Predictor::Predictor(std::shared_ptr<map::Map const> map, TrackerOptions const& options)
-    : parts_(new Parts{Tracker<>(std::move(map), options)}) {}
+    : parts_(new Parts{map, Tracker<>(map, options)}) {}
 CAMBIUM_COLD Predictor::Predictor(Predictor&&) noexcept = default;
 CAMBIUM_COLD Predictor& Predictor::operator=(Predictor&&) noexcept = default;
 CAMBIUM_COLD Predictor::~Predictor() = default;
 
 CAMBIUM_COLD std::vector<std::string> const& Predictor::map_warnings() const { return parts_->warnings; }
-CAMBIUM_COLD std::shared_ptr<map::Map const> const& Predictor::map() const {
-  return parts_->tracker.world().shared_map();
-}
+CAMBIUM_COLD std::shared_ptr<map::Map const> const& Predictor::map() const { return parts_->map; }
 CAMBIUM_COLD std::span<ObjectKey const> Predictor::objects() const { return parts_->tracker.objects(); }
 
 CAMBIUM_COLD std::span<Verdict const> Predictor::update(std::int64_t stamp, std::span<TrackedObject const> objects) {
@@ -115,7 +114,6 @@ CAMBIUM_COLD void Predictor::prepare(double x, double y, double radius) {
 
 CAMBIUM_COLD void Predictor::set_light(std::string const& name, map::LightColor color) {
   constexpr double always = 3600.0;  // [s]
-  auto& world = parts_->tracker.world();
   auto const light = map()->find_light(name);
   map::LightPlan plan{.cycle = always, .green_begin = 0.0, .green_end = always, .yellow = 0.0};
   switch (color) {
@@ -125,14 +123,14 @@ CAMBIUM_COLD void Predictor::set_light(std::string const& name, map::LightColor 
     case map::LightColor::green:
       break;
     case map::LightColor::yellow:
-      plan.green_begin = plan.green_end = std::fmod(world.time(), always);
+      plan.green_begin = plan.green_end = std::fmod(parts_->tracker.world().time(), always);
       plan.yellow = always;
       break;
     case map::LightColor::red:
       plan.green_end = 0.0;
       break;
   }
-  world.set_light(light, plan);
+  parts_->tracker.set_light(light, plan);
 }
 
 }  // namespace cambium::inline v0_1

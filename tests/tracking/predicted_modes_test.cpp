@@ -294,7 +294,7 @@ TEST_CASE("a request that cannot be answered is an error that says what to give"
   CHECK(message({.modes = 2}).empty());
   CHECK(message({.modes = 3}).find("there is room for 60 of 90") != std::string::npos);
   for (auto const& bad : {cb::PredictionRequest{.steps = 0},
-                          {.step = 0.0},
+                          {.step = 1e-300},
                           {.step = not_a_number},
                           {.modes = 0},
                           {.modes = std::numeric_limits<std::size_t>::max()}})

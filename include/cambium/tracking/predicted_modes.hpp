@@ -55,7 +55,7 @@ struct GivenTrajectory {
 /// What to predict.
 struct PredictionRequest {
   std::size_t steps = 30;
-  double step = 0.1;      ///< [s]
+  double step = 0.1;      ///< [s], at least 0.001
   std::size_t modes = 1;  ///< per object; of the world, if `joint`
   /// Marginal: mode m of each object is its m-th most probable one, and their probabilities are its own. The objects'
   /// modes of one number happen together: mode 1 is what each does if all others do their second best, too.

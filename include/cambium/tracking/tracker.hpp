@@ -14,14 +14,14 @@
 
 #include "cambium/behavior/drivers.hpp"
 #include "cambium/behavior/open_loop/constant_turn.hpp"
-#include "cambium/core/described.hpp"
 #include "cambium/core/portable_math.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/shape.hpp"
-#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/corridor/free_corridor.hpp"
+#include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/tracking/detail/rollouts.hpp"
 #include "cambium/tracking/detail/track.hpp"
@@ -30,6 +30,7 @@
 #include "cambium/tracking/tracked_object.hpp"
 #include "cambium/tracking/tracker_options.hpp"
 #include "cambium/tracking/verdict.hpp"
+#include "cambium/world/detail/check_described.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cambium::inline v0_1 {
@@ -46,7 +47,7 @@ using TrackedWorld = World<BehaviorSet<UrbanDriver, ConstantTurn>, InterpolateEx
 /// what was learnt of a driver (its desired speed) stay as long as the object does. What a sensor may send never
 /// throws: an object is refused, with a reason, and nothing else changes.
 ///
-/// Take the world, or a copy, to plan and predict in. Its agents' behaviours are alternatives of the world's set:
+/// Take a copy of the world to plan in. Its agents' behaviours are alternatives of the world's set:
 /// `Driver` on lanes, `ConstantTurn` elsewhere.
 template <class WorldType = TrackedWorld, class DriverType = UrbanDriver>
 class Tracker {
@@ -74,8 +75,14 @@ class Tracker {
     off_lanes_ = detail::numbered_road(*map, {}, map::build_free_corridor(*map, way), "tracker");
   }
 
-  /// The world at the last stamp; its time is counted from the first one. Valid until the next update.
-  [[nodiscard]] World& world() { return world_; }
+  /// The world at the last stamp; its time is counted from the first one. Valid until the next update. Copy it to step
+  /// it and to plan in it.
+  [[nodiscard]] World const& world() const { return world_; }
+
+  /// As `World::set_light`, `World::add_object`, `World::remove_object`; they last.
+  void set_light(LightId id, map::LightPlan const& plan) { world_.set_light(id, plan); }
+  ObjectId add_object(geometry::Polygon outline) { return world_.add_object(std::move(outline)); }
+  void remove_object(ObjectId id) { world_.remove_object(id); }
 
   /// The agent of an object; nothing if it is not tracked. O(1).
   [[nodiscard]] std::optional<AgentId> agent_of(ObjectKey const& key) const {

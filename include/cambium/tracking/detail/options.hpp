@@ -38,8 +38,8 @@ inline void check_request(PredictionRequest const& request, std::size_t objects,
   };
   if (request.steps < 1 || request.steps > most_steps)
     refuse("steps", "is " + std::to_string(request.steps), "give a number in [1, 10000]");
-  if (!(request.step > 0.0 && request.step <= 10.0))
-    refuse("step", "is " + std::to_string(request.step) + " s", "give a value in (0, 10] s");
+  if (!(request.step >= 0.001 && request.step <= 10.0))
+    refuse("step", "is " + std::to_string(request.step) + " s", "give a value in [0.001, 10] s");
   if (request.modes < 1 || request.modes > most_modes)
     refuse("modes", "is " + std::to_string(request.modes), "give a number in [1, 256]");
   if (auto const needed = request.modes * objects * request.steps; room < needed)
@@ -143,12 +143,12 @@ void add_ways(View const& view, Track const& track, double horizon, std::vector<
 template <class Driver, class World, class Track>
 void list_options(World& world, Slot slot, Track const& track, std::span<GivenTrajectory const> given, double horizon,
                   std::vector<Option>& options) {
-  constexpr double starts = 0.2;
+  constexpr double starts = 0.2, most = 1e9;
   options.clear();
   for (std::size_t i = 0; i < given.size(); ++i)
     if (given[i].key == track.key && given[i].probability > 0.0 && std::isfinite(given[i].probability) &&
         !given[i].states.empty() && std::isfinite(given[i].states[0].x + given[i].states[0].y))
-      options.push_back({given[i].probability, Maneuver::given, i});
+      options.push_back({std::min(given[i].probability, most), Maneuver::given, i});
   bool const stands = track.motion == ObjectMotion::stands;
   if (options.empty() && !track.ways.empty() && !stands) add_ways<Driver>(world.observe(slot), track, horizon, options);
   if (options.empty()) options.push_back({});
