@@ -148,7 +148,8 @@ class Tracker {
   template <class Choose>
   PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states, Choose const& choose) {
     return rollouts_.predict(
-        world_, tracks_, off_lanes_, request, states, [&](Track const& track) { return driver_of(track); }, choose);
+        world_, tracks_, off_lanes_, request, states, [&](ObjectTrack const& track) { return driver_of(track); },
+        choose);
   }
   PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states) {
     return predict(request, states, [](auto const&, auto const&) { return std::optional<typename World::Behavior>{}; });
@@ -158,7 +159,7 @@ class Tracker {
   using State = typename World::State;
   using Set = typename World::Behaviors;
 
-  using Track = detail::Track<World>;
+  using ObjectTrack = detail::ObjectTrack<World>;
 
   /// Moves the world, and with it what is predicted of each track, on by `gap` [s].
   void advance(double gap) {
@@ -212,7 +213,7 @@ class Tracker {
     }
   }
 
-  void judge_motion(Track& track, TrackedObject const& object) const {
+  void judge_motion(ObjectTrack& track, TrackedObject const& object) const {
     constexpr double against = 2.3, bends_off = 0.5, ahead = 2.5, drifts = 0.25;  // [rad], [rad], [s], [m/s]
     track.stays = object.kind == ObjectClass::obstacle || object.is_parked;
     if (track.stays) {
@@ -244,7 +245,7 @@ class Tracker {
   }
 
   void forget_unseen() {
-    std::erase_if(tracks_, [&](Track const& track) {
+    std::erase_if(tracks_, [&](ObjectTrack const& track) {
       return detail::seconds_between(track.seen, stamp_) > options_.keep_unseen;
     });
     index_tracks();
@@ -292,13 +293,13 @@ class Tracker {
     learn(*roster);
   }
 
-  [[nodiscard]] typename Set::Any behavior_of(Track const& track) const {
+  [[nodiscard]] typename Set::Any behavior_of(ObjectTrack const& track) const {
     if (track.ways.empty() || track.motion == ObjectMotion::stands) return ConstantTurn{};
     return driver_of(track);
   }
 
   /// Who drives an object on lanes.
-  [[nodiscard]] Driver driver_of(Track const& track) const {
+  [[nodiscard]] Driver driver_of(ObjectTrack const& track) const {
     auto driver = driver_;
     if (track.desired_speed > 0.0) driver.law.desired_speed = track.desired_speed;
     if constexpr (requires { driver.heeds.template get<SpeedLimit>(); }) {
@@ -363,7 +364,7 @@ class Tracker {
   std::int64_t stamp_ = 0, begin_ = 0;  ///< of the last list, and of the first one [ns]
   bool begins_ = true;                  ///< there was no list yet
   std::uint32_t next_agent_ = 1;
-  std::vector<Track> tracks_;  ///< in the order of their agents
+  std::vector<ObjectTrack> tracks_;  ///< in the order of their agents
   std::unordered_map<ObjectKey, std::size_t> places_;
   std::vector<ObjectKey> keys_;
   std::vector<Verdict> verdicts_;

@@ -68,8 +68,8 @@ template <class View>
 }
 
 /// What an object on a lane may do besides what is expected: shares of the probability of its first way; own choice.
-template <class Driver, class View, class Track>
-void add_deviations(View const& view, Track const& track, std::vector<Option>& options) {
+template <class Driver, class View, class ObjectTrack>
+void add_deviations(View const& view, ObjectTrack const& track, std::vector<Option>& options) {
   constexpr double rare = 0.03, drifts = 0.5, turns_back = 0.15, keeps_braking = 0.3, brakes = -1.0;
   auto const& way = track.ways.front();
   auto const& corridor = way.road->corridors[way.place.corridor];
@@ -116,8 +116,8 @@ void add_deviations(View const& view, Track const& track, std::vector<Option>& o
 }
 
 /// Adds those of a track's ways that differ within `horizon` [s], and what else it may do on the first one.
-template <class Driver, class View, class Track>
-void add_ways(View const& view, Track const& track, double horizon, std::vector<Option>& options) {
+template <class Driver, class View, class ObjectTrack>
+void add_ways(View const& view, ObjectTrack const& track, double horizon, std::vector<Option>& options) {
   constexpr double gain = 2.0, margin = 10.0;  // [m/s^2], [m]
   double const reach = (track.state.speed + 0.5 * gain * horizon) * horizon + margin;
   for (std::size_t i = 0; i < track.ways.size(); ++i) {
@@ -140,9 +140,9 @@ void add_ways(View const& view, Track const& track, double horizon, std::vector<
 
 /// What an object may do within `horizon` [s], the most probable first; the probabilities sum to 1. `world` must be up
 /// to date.
-template <class Driver, class World, class Track>
-void list_options(World& world, Slot slot, Track const& track, std::span<GivenTrajectory const> given, double horizon,
-                  std::vector<Option>& options) {
+template <class Driver, class World, class ObjectTrack>
+void list_options(World& world, Slot slot, ObjectTrack const& track, std::span<GivenTrajectory const> given,
+                  double horizon, std::vector<Option>& options) {
   constexpr double starts = 0.2, most = 1e9;
   options.clear();
   for (std::size_t i = 0; i < given.size(); ++i)

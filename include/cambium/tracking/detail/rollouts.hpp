@@ -27,14 +27,14 @@
 namespace cambium::inline v0_1::detail {
 
 /// A state of an object as its host gives it, and back: of its point, with the heading of its front.
-template <class Track, class State>
-[[nodiscard]] PredictedState seen_by_host(Track const& track, State const& state) {
+template <class ObjectTrack, class State>
+[[nodiscard]] PredictedState seen_by_host(ObjectTrack const& track, State const& state) {
   auto const at = geometry::Point{state.x, state.y} + track.to_point() * direction(state.heading);
   return {at.x(), at.y(), geometry::normalize_angle(state.heading + (track.reverses ? geometry::pi : 0.0)),
           track.reverses ? -state.speed : state.speed};
 }
-template <class Track, class State>
-void set_from_host(Track const& track, PredictedState const& seen, State& state) {
+template <class ObjectTrack, class State>
+void set_from_host(ObjectTrack const& track, PredictedState const& seen, State& state) {
   state.heading = geometry::normalize_angle(seen.heading + (track.reverses ? geometry::pi : 0.0));
   auto const at = geometry::Point{seen.x, seen.y} - track.to_point() * direction(state.heading);
   state.x = at.x();
@@ -62,12 +62,12 @@ inline void complete(PredictedState before, std::span<PredictedState const> give
 template <class World, class Driver>
 class Rollouts {
  public:
-  using Track = detail::Track<World>;
+  using ObjectTrack = detail::ObjectTrack<World>;
   using Behavior = typename World::Behavior;
 
   /// See `Tracker::predict`. `now`: the tracker's world; `driver_of(track)`: who drives it on lanes.
   template <class DriverOf, class Choose>
-  PredictedModes predict(World& now, std::span<Track const> tracks,
+  PredictedModes predict(World& now, std::span<ObjectTrack const> tracks,
                          std::shared_ptr<map::RoadCorridor const> const& off_lanes, PredictionRequest const& request,
                          std::span<PredictedState> states, DriverOf const& driver_of, Choose const& choose) {
     auto const count = request.objects.empty() ? tracks.size() : request.objects.size();
@@ -101,7 +101,7 @@ class Rollouts {
     bool on_lanes = false;
   };
 
-  void find_objects(std::span<Track const> tracks, PredictionRequest const& request) {
+  void find_objects(std::span<ObjectTrack const> tracks, PredictionRequest const& request) {
     keys_.clear();
     places_.clear();
     if (request.objects.empty()) {
@@ -167,8 +167,9 @@ class Rollouts {
 
   /// Sets the world to the begin of a mode: each object with its road, its driver and what that remembers.
   template <class DriverOf, class Choose>
-  void begin(World const& now, std::span<Track const> tracks, std::shared_ptr<map::RoadCorridor const> const& off_lanes,
-             PredictionRequest const& request, std::size_t mode, DriverOf const& driver_of, Choose const& choose) {
+  void begin(World const& now, std::span<ObjectTrack const> tracks,
+             std::shared_ptr<map::RoadCorridor const> const& off_lanes, PredictionRequest const& request,
+             std::size_t mode, DriverOf const& driver_of, Choose const& choose) {
     std::shared_ptr<typename World::RosterType> roster;
     auto frame = now.frame();
     replays_.clear();
@@ -197,7 +198,7 @@ class Rollouts {
 
   /// Lets an object take an option; returns whether anything in its roster changed.
   template <class DriverOf, class Agent, class Record>
-  bool take(std::size_t number, Track const& track, Option const& option, PredictionRequest const& request,
+  bool take(std::size_t number, ObjectTrack const& track, Option const& option, PredictionRequest const& request,
             Map const& map, std::shared_ptr<map::RoadCorridor const> const& off_lanes, DriverOf const& driver_of,
             Agent& agent, Record& record) {
     using Set = typename World::Behaviors;
@@ -253,9 +254,10 @@ class Rollouts {
 
   /// An object whose trajectory stays on one of its ways is on that, and its driver goes on at the end.
   template <class DriverOf, class Agent, class Record>
-  void begin_replay(std::size_t number, Track const& track, Option const& option, PredictionRequest const& request,
-                    Map const& map, std::shared_ptr<map::RoadCorridor const> const& off_lanes,
-                    DriverOf const& driver_of, Agent& agent, Record& record) {
+  void begin_replay(std::size_t number, ObjectTrack const& track, Option const& option,
+                    PredictionRequest const& request, Map const& map,
+                    std::shared_ptr<map::RoadCorridor const> const& off_lanes, DriverOf const& driver_of, Agent& agent,
+                    Record& record) {
     auto& replay = replays_.emplace_back();
     replay.track = number;
     complete(seen_by_host(track, track.state), request.given[option.place].states, request.step, request.steps,
@@ -293,7 +295,7 @@ class Rollouts {
 
   /// Rolls the world of a mode, in steps longer than those asked for where that is permitted, and writes its states.
   template <class DriverOf>
-  void roll(std::span<Track const> tracks, std::shared_ptr<map::RoadCorridor const> const& off_lanes,
+  void roll(std::span<ObjectTrack const> tracks, std::shared_ptr<map::RoadCorridor const> const& off_lanes,
             PredictionRequest const& request, std::size_t mode, std::span<PredictedState> states,
             DriverOf const& driver_of) {
     auto const at_once = std::max<std::size_t>(1, static_cast<std::size_t>(longest_step / request.step + 1e-9));
@@ -322,7 +324,7 @@ class Rollouts {
   }
 
   /// Moves those who are replayed to their states after `done` steps.
-  void replay(std::span<Track const> tracks, std::size_t done) {
+  void replay(std::span<ObjectTrack const> tracks, std::size_t done) {
     if (std::none_of(replays_.begin(), replays_.end(), [&](Replay const& r) { return r.states.size() >= done; }))
       return;
     auto frame = world_->frame();
@@ -348,7 +350,7 @@ class Rollouts {
 
   /// Gives a road to those who have come to the end of theirs, and to those off the lanes whose trajectory has ended.
   template <class DriverOf>
-  void pass_on_departed(std::span<Track const> tracks, std::shared_ptr<map::RoadCorridor const> const& off_lanes,
+  void pass_on_departed(std::span<ObjectTrack const> tracks, std::shared_ptr<map::RoadCorridor const> const& off_lanes,
                         DriverOf const& driver_of, std::size_t done) {
     std::shared_ptr<typename World::RosterType> roster;
     auto const pass_on = [&](std::size_t place, auto& frame) {

@@ -77,7 +77,7 @@ inline constexpr double standing_object = 0.3;  ///< slower counts as standing [
 
 /// What a tracker knows of an object.
 template <class World>
-struct Track {
+struct ObjectTrack {
   ObjectKey key;
   AgentId agent = none<AgentId>;
   std::int64_t seen = 0;  ///< when [ns]
