@@ -30,7 +30,6 @@
 #include "cambium/tracking/tracked_object.hpp"
 #include "cambium/tracking/tracker_options.hpp"
 #include "cambium/tracking/verdict.hpp"
-#include "cambium/world/detail/check_described.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cambium::inline v0_1 {

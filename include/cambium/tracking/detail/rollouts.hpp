@@ -22,7 +22,7 @@
 #include "cambium/tracking/detail/track.hpp"
 #include "cambium/tracking/detail/ways.hpp"
 #include "cambium/tracking/predicted_modes.hpp"
-#include "cambium/world/detail/check_described.hpp"
+#include "cambium/world/world.hpp"
 
 namespace cambium::inline v0_1::detail {
 

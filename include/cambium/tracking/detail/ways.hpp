@@ -14,7 +14,7 @@
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/world.hpp"
 
 namespace cambium::inline v0_1::detail {
 
