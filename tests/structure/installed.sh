@@ -6,7 +6,7 @@ source=$1
 prefix=$2
 shift 2
 
-diff <(cd "$source/include" && find . -name '*.hpp' | sort) <(cd "$prefix/include" && find . -type f | sort)
+diff <(cd "$source/include" && find . -name '*.hpp' -o -name '*.h' | sort) <(cd "$prefix/include" && find . -type f | sort)
 cmp "$source/LICENSE" "$prefix/share/doc/cambium/LICENSE"
 
 if ! command -v pkg-config >/dev/null; then
