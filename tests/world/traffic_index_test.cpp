@@ -14,6 +14,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "fixtures.hpp"
 

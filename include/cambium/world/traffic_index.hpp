@@ -103,8 +103,8 @@ class TrafficIndex {
   /// over the lanes. The same answers. No allocation once warm. O(agents).
   void expect_searches() {
     constexpr std::size_t few = 16;  // a search among them is as fast
-    if (size_ < few) return;
-    first_in_cell_.reserve(2 * size_ + 1);  // once, however many of them are placed
+    if (agents_.capacity() < few) return;
+    first_in_cell_.reserve(2 * agents_.capacity() + 1);  // once, however many entries there are
     std::size_t placed = size_;
     while (placed > 0 && !(agents_[placed - 1].position < std::numeric_limits<double>::infinity())) --placed;
     if (placed < few || !(agents_[placed - 1].position > agents_[0].position)) return;
