@@ -7,7 +7,9 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cambium/predictor.hpp"
@@ -76,8 +78,8 @@ struct Settings {
 void run(Settings const& settings) {
   constexpr double latitude = 49.0, longitude = 8.4;  // of the Lanelet2 map that is tried first
   bool const is_lanelet2 = std::filesystem::path(settings.map).extension() == ".osm";
-  Traffic traffic{
-      cb::Predictor(settings.map, {}, is_lanelet2 ? std::optional(cb::MapOrigin{latitude, longitude}) : std::nullopt)};
+  Traffic traffic{cb::Predictor(
+      settings.map, {}, is_lanelet2 ? std::optional(cb::map::Lanelet2Origin{latitude, longitude}) : std::nullopt)};
   stack::Perception const perception(*traffic.predictor.map());
   std::printf("%s, %d lists of 0.1 s; the last one:\n\n", settings.map.c_str(), settings.cycles);
   for (int i = 0; i < settings.cycles; ++i) {

@@ -1,14 +1,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
 #include <memory>
 #include <optional>
 #include <span>
-#include <stdexcept>
-#include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -18,12 +18,12 @@
 #include "cambium/core/version.hpp"
 #include "cambium/predictor.hpp"
 
-/// The functions of `cambium.h`. They are compiled into `cambium::compiled_predictor`; a program that does without
-/// defines them by including this header in one source.
+/// The functions of `cambium.h`, which `cambium::compiled_predictor` has.
 
 namespace cambium::inline v0_1::detail {
 
-/// What a `cambium_predictor*` points to: in the namespace, so that two versions in one process stay apart.
+/// What a `cambium_predictor*` points to: in the namespace, so that libraries that have each a version of their own
+/// inside stay apart.
 struct PredictorForC {
   Predictor predictor;
   std::vector<TrackedObject> objects{};
@@ -36,9 +36,14 @@ struct PredictorForC {
   return reinterpret_cast<PredictorForC const*>(predictor);
 }
 
-[[nodiscard]] CAMBIUM_COLD std::string& last_c_error() {
-  thread_local std::string text;
+/// What went wrong last in this thread. Setting it cannot fail.
+[[nodiscard]] CAMBIUM_COLD std::array<char, 1024>& last_c_error() {
+  thread_local std::array<char, 1024> text{};
   return text;
+}
+CAMBIUM_COLD void keep_c_error(char const* what) noexcept {
+  auto& text = last_c_error();
+  text[std::string_view(what).copy(text.data(), text.size() - 1)] = '\0';
 }
 
 /// Calls `f`; returns what it returns, or `failed` and keeps the reason if it throws.
@@ -47,9 +52,9 @@ template <class F>
   try {
     return f();
   } catch (std::exception const& error) {
-    last_c_error() = error.what();
+    keep_c_error(error.what());
   } catch (...) {
-    last_c_error() = "an exception that is no std::exception";
+    keep_c_error("an exception that is no std::exception");
   }
   return failed;
 }
@@ -135,12 +140,12 @@ CAMBIUM_COLD char const* cambium_maneuver_name(int32_t maneuver) {
              : "no maneuver of this number";
 }
 
-CAMBIUM_COLD char const* cambium_error(void) { return cambium::detail::last_c_error().c_str(); }
+CAMBIUM_COLD char const* cambium_error(void) { return cambium::detail::last_c_error().data(); }
 
 CAMBIUM_COLD cambium_predictor* cambium_open(char const* map_file, double const* origin) {
   return cambium::detail::guarded(nullptr, [&]() -> cambium_predictor* {
     if (map_file == nullptr) cambium::detail::refuse_call("cambium_open", "there is no file name");
-    std::optional<cambium::MapOrigin> begin;
+    std::optional<cambium::map::Lanelet2Origin> begin;
     if (origin != nullptr) begin = {origin[0], origin[1]};
     return reinterpret_cast<cambium_predictor*>(
         new cambium::detail::PredictorForC{cambium::Predictor(map_file, {}, begin)});
@@ -182,8 +187,7 @@ CAMBIUM_COLD int cambium_predict(cambium_predictor* predictor, cambium_request c
                 sizeof(cambium_key) == sizeof(cambium::ObjectKey));
   return cambium::detail::guarded(0, [&] {
     using cambium::detail::refuse_call;
-    if (predictor == nullptr || request == nullptr || states == nullptr || modes == nullptr)
-      refuse_call("cambium_predict", "a pointer is null");
+    if (predictor == nullptr || request == nullptr) refuse_call("cambium_predict", "a pointer is null");
     if ((request->given == nullptr && request->given_count > 0))
       refuse_call("cambium_predict", "given is null, given_count is not 0");
     auto const state_of = [](cambium_state const& s) { return cambium::PredictedState{s.x, s.y, s.heading, s.speed}; };
@@ -199,6 +203,7 @@ CAMBIUM_COLD int cambium_predict(cambium_predictor* predictor, cambium_request c
       given.push_back({{t.key.high, t.key.low}, courses[i], t.probability});
     }
     auto const count = keys.empty() ? cambium::detail::of_c(predictor)->predictor.objects().size() : keys.size();
+    if (count > 0 && (states == nullptr || modes == nullptr)) refuse_call("cambium_predict", "a pointer is null");
     if (request->modes > 0 && mode_room / request->modes < count)
       refuse_call("cambium_predict", "there is no room for all modes: give modes * objects");
     bool const is_possible = request->modes <= 256 && request->steps <= 10'000;  // else predict says so

@@ -1,7 +1,7 @@
 /*
  * cambium's tracker and predictor for C, and for all that calls C: Rust, Python, Julia, older C++. Link
- * cambium_compiled_predictor and what that needs, and the C++ library. What the functions mean is said in
- * cambium/predictor.hpp, cambium/tracking/tracked_object.hpp and cambium/tracking/predicted_modes.hpp.
+ * cambium_compiled_predictor and what that needs, and the C++ library. cambium/predictor.hpp,
+ * cambium/tracking/tracked_object.hpp and cambium/tracking/predicted_modes.hpp document what the functions do.
  *
  * Metres, radians, seconds, map frame; stamps in nanoseconds of any epoch. No function throws. Those that can fail
  * return 0 or a null pointer then, and cambium_error says why. A predictor is for one thread at a time.

@@ -10,6 +10,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/map/fwd.hpp"
+#include "cambium/map/lanelet/lanelet2_origin.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/tracking/predicted_modes.hpp"
 #include "cambium/tracking/tracked_object.hpp"
@@ -18,21 +19,17 @@
 
 namespace cambium::inline v0_1 {
 
-/// Where a Lanelet2 file's map frame begins [degrees], see `map::Lanelet2Origin`.
-struct MapOrigin {
-  double latitude = 0.0, longitude = 0.0;
-};
-
 /// What drives an object in a mode, in place of what the tracker would take.
 struct ObjectModel {
   bool on_lanes = true;        ///< a driver on its way, if it is on one; else it goes on its own course
   double desired_speed = 0.0;  ///< of a driver [m/s]; 0: as learnt
   double time_headway = 0.0;   ///< likewise [s]; 0: the usual one
-  bool gives_way = true;       ///< a driver heeds those who go first
+  bool gives_way = true;       ///< a driver heeds others at junctions
 };
 
 /// Tracks and predicts the objects of a planner stack: `Tracker<>`, behind a firewall. Who includes this compiles
-/// neither templates nor Eigen, and links `cambium::compiled_predictor` (without it, one source compiles all).
+/// neither templates nor Eigen, and links `cambium::compiled_predictor` (else each source that includes this compiles
+/// it all).
 ///
 ///     cambium::Predictor predictor("town.xodr");
 ///     for each cycle:  verdicts = predictor.update(stamp, objects);
@@ -44,7 +41,7 @@ class Predictor {
   /// Reads a map: OpenDRIVE (.xodr), Lanelet2 (.osm; with `origin` where its nodes have degrees alone) or a CommonRoad
   /// scenario (.xml). Throws `MapError` where that fails, `ParameterError` for options out of range.
   explicit Predictor(std::string const& map_file, TrackerOptions const& options = {},
-                     std::optional<MapOrigin> const& origin = {});
+                     std::optional<map::Lanelet2Origin> const& origin = {});
   /// On a map of the caller's. Throws `WorldError` without one.
   explicit Predictor(std::shared_ptr<map::Map const> map, TrackerOptions const& options = {});
   Predictor(Predictor&&) noexcept;
@@ -63,7 +60,7 @@ class Predictor {
   [[nodiscard]] std::span<ObjectKey const> objects() const;
 
   /// See `Tracker::predict`. `choose` may say what drives an object in a mode; a value that is not finite or out of
-  /// range (0 to 70 m/s, 0 to 10 s) counts as 0.
+  /// range (0.1 to 70 m/s, 0 to 10 s) counts as 0.
   using Choose = std::function<std::optional<ObjectModel>(ObjectKey const&, PredictedMode const&)>;
   PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states, Choose const& choose = {});
 

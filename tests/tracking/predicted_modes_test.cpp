@@ -17,22 +17,12 @@
 #include "cambium/core/error.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/tracking/tracker.hpp"
+#include "objects.hpp"
 
 namespace cb = cambium;
+using objects::cycle, objects::not_a_number, objects::object, objects::system_clock;
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr std::int64_t system_clock = 1'764'580'000'000'000'000, cycle = 100'000'000;  // [ns]
-
-cb::TrackedObject object(std::uint64_t id, double x, double y, double heading, double speed) {
-  return {.key = {0, id},
-          .x = x,
-          .y = y,
-          .heading = heading,
-          .vx = speed * std::cos(heading),
-          .vy = speed * std::sin(heading)};
-}
 
 /// A tracker of objects that have moved straight on for a second, and what it predicts.
 struct Predicted {
@@ -270,6 +260,91 @@ TEST_CASE("predictions change nothing, and are the same each time, whatever the 
   predicted.with({.modes = 4});
   CHECK(std::equal(first.begin(), first.begin() + needed, predicted.states.begin()));
   CHECK(predicted.tracker.world().frame() == frame);
+}
+
+TEST_CASE("who does not drive is not made to, where a trajectory of the host ends") {
+  auto const crossing = support::own_map("intersection_4way.xodr");
+  auto walks = object(1, -60.0, -6.8, 0.0, 1.4), parked = object(2, -60.0, -1.75, 0.0, 0.0);
+  walks.kind = cb::ObjectClass::pedestrian;
+  parked.is_parked = true;
+  Predicted predicted(crossing, {walks, parked});
+  std::vector<cb::PredictedState> on, stays(5, {-60.0, -1.75, 0.0, 0.0});
+  for (int k = 1; k <= 10; ++k) on.push_back({-60.0 + 0.14 * k, -6.8, 0.0, 1.4});
+  std::vector<cb::GivenTrajectory> const given{{.key = {0, 1}, .states = on}, {.key = {0, 2}, .states = stays}};
+  predicted.with({.steps = 60, .given = given});
+  CHECK(predicted.end(0, 0).x == doctest::Approx(-60.0 + 0.14 * 60).epsilon(0.02));
+  CHECK(predicted.end(0, 1).x == doctest::Approx(-60.0));
+}
+
+TEST_CASE("a chosen driver carries out the maneuver, and another model goes on as measured") {
+  auto turning = object(1, 100.0, -1.875, 0.0, 20.0), off = object(2, 60.0, -60.0, 0.3, 8.0);
+  off.yaw_rate = 0.4;
+  Predicted predicted(support::own_map("highway.xodr"), {turning, off});
+  auto const as = [&](auto const& behavior) {
+    return [&](cb::ObjectKey const&, cb::PredictedMode const&) {
+      return std::optional<cb::TrackedWorld::Behavior>(behavior);
+    };
+  };
+  predicted.with({.steps = 60, .modes = 3});
+  auto const off_lanes = predicted.end(0, 1);
+  cb::UrbanDriver slow;
+  slow.law.desired_speed = 15.0;
+  predicted.modes = predicted.tracker.predict({.steps = 60, .modes = 3}, predicted.states, as(slow));
+  auto const changes = predicted.find(0, cb::Maneuver::changes_right);
+  REQUIRE(changes);
+  CHECK(predicted.end(*changes, 0).y == doctest::Approx(-5.625).epsilon(0.05));
+  CHECK(predicted.end(*changes, 0).speed < 16.5);
+  CHECK(predicted.end(0, 1) == off_lanes);  // a driver has nowhere to drive there
+  predicted.modes = predicted.tracker.predict({.steps = 60}, predicted.states, as(cb::ConstantTurn{}));
+  CHECK(predicted.end(0, 1) == off_lanes);
+}
+
+TEST_CASE("long steps change little, also behind a trajectory of the host's") {
+  Predicted predicted(support::own_map("intersection_3way.xodr"),
+                      {object(1, -130.0, -1.6, 0.0, 20.0), object(2, -95.0, -1.6, 0.0, 20.0)});
+  auto const end_at = [&](double step) {
+    std::vector<cb::PredictedState> brakes;  // by 4 m/s^2, to a standstill after 5 s
+    for (int k = 1; k * step < 5.001; ++k) {
+      double const t = k * step;
+      brakes.push_back({-95.0 + 20.0 * t - 2.0 * t * t, -1.6, 0.0, 20.0 - 4.0 * t});
+    }
+    cb::GivenTrajectory const given{.key = {0, 2}, .states = brakes};
+    predicted.with({.steps = brakes.size(), .step = step, .given = {&given, 1}});
+    CHECK(predicted.end(0, 1) == brakes.back());
+    return predicted.end(0, 0).x;
+  };
+  double const fine = end_at(0.02);
+  CHECK(fine < -45.0 - 4.5);
+  CHECK(fine > -45.0 - 25.0);
+  for (double const step : {0.1, 0.25, 0.5, 1.0}) CHECK(std::abs(end_at(step) - fine) < 1.5);
+}
+
+TEST_CASE("a vehicle that reverses by positions alone keeps its heading") {
+  Predicted predicted(support::own_map("highway.xodr"), {object(1, 100.0, -1.875, 0.0, 0.0)});
+  std::vector<cb::PredictedState> back;
+  for (int k = 1; k <= 10; ++k) back.push_back({100.0 - 0.1 * k, -1.875, not_a_number, not_a_number});
+  cb::GivenTrajectory const given{.key = {0, 1}, .states = back};
+  predicted.with({.given = {&given, 1}});
+  for (std::size_t k = 0; k < 30; ++k) {
+    CHECK(std::abs(predicted.state(0, 0, k).heading) < 1e-6);
+    CHECK(predicted.state(0, 0, k).speed == doctest::Approx(-1.0));
+  }
+  CHECK(predicted.end(0, 0).x == doctest::Approx(97.0).epsilon(0.001));
+}
+
+TEST_CASE("states are those of the point that the host gives; the last result may be asked for again") {
+  auto rear = object(1, 100.0, -1.875, 0.0, 20.0);
+  rear.point = cb::ObjectPoint::rear_axle;
+  Predicted predicted(support::own_map("highway.xodr"), {rear, object(2, 100.0, -5.625, 0.0, 20.0)});
+  predicted.with({});
+  CHECK(predicted.state(0, 0, 0).x == doctest::Approx(102.0).epsilon(0.001));
+  CHECK(predicted.state(0, 1, 0).x == doctest::Approx(102.0).epsilon(0.001));
+  auto const first = predicted.end(0, 1);
+  predicted.with({.objects = predicted.modes.objects});
+  CHECK(predicted.modes.objects.size() == 2);
+  CHECK(predicted.end(0, 1) == first);
+  cb::Tracker<> none(predicted.map);
+  CHECK(none.predict({}, {}).objects.empty());
 }
 
 TEST_CASE("an agent that comes to the end of its road goes on") {

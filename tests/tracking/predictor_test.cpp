@@ -15,13 +15,12 @@
 #include "../support/corpus.hpp"
 #include "../support/error_of.hpp"
 #include "cambium/cambium.h"
+#include "objects.hpp"
 
 namespace cb = cambium;
+using objects::cycle, objects::not_a_number, objects::system_clock;
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr std::int64_t system_clock = 1'764'580'000'000'000'000, cycle = 100'000'000;  // [ns]
 
 std::string own_map(char const* name) { return std::string(CAMBIUM_SOURCE_DIR) + "/maps/" + name; }
 
@@ -67,17 +66,53 @@ TEST_CASE("the predictor behind the firewall tracks and predicts") {
   CHECK(end(0).x < 172.0);
   predictor.predict({}, states, choose({.desired_speed = not_a_number, .time_headway = -3.0}));
   CHECK(end(0).x == doctest::Approx(178.0).epsilon(0.01));
-  predictor.predict({}, states, choose({.on_lanes = false}));
-  CHECK(end(0).x == doctest::Approx(178.0).epsilon(0.01));
+  states.resize(2 * 150);
+  auto const y_with = [&](cb::ObjectModel const& model) {  // where the motorway has bent
+    predictor.predict({.steps = 150}, states, choose(model));
+    return states[149].y;
+  };
+  double const bent = y_with({});
+  CHECK(std::abs(bent - y_with({.time_headway = 0.8})) < 0.5);
+  CHECK(std::abs(bent - y_with({.on_lanes = false})) > 1.5);
+}
+
+TEST_CASE("a chosen driver may heed nobody at junctions") {
+  cb::Predictor predictor(own_map("intersection_3way.xodr"));
+  std::vector<cb::TrackedObject> const list{
+      {.key = {0, 1}, .x = -45.0, .y = -1.6, .heading = 0.0, .vx = 10.0},
+      {.key = {0, 2}, .x = 0.4, .y = -38.0, .heading = 1.5, .vx = 0.5, .vy = 7.0}};
+  predictor.update(system_clock, list);
+  std::vector<cb::PredictedState> states(2 * 40);
+  predictor.predict({.steps = 40}, states);
+  double const waits = states[79].y;
+  predictor.predict({.steps = 40}, states,
+                    [](cb::ObjectKey const&, cb::PredictedMode const&) { return cb::ObjectModel{.gives_way = false}; });
+  CHECK(states[79].y > waits + 3.0);
+}
+
+TEST_CASE("whatever a sensor sends, a choice for it does not throw") {
+  cb::Predictor predictor(own_map("highway.xodr"));
+  std::vector<cb::PredictedState> states(30);
+  for (double const speed : {0.0, 85.0, 140.0, -3.0}) {
+    for (int i = 0; i < 5; ++i)
+      predictor.update(system_clock + (100 * static_cast<int>(speed) + i) * cycle,
+                       std::vector<cb::TrackedObject>{{.key = cb::key_of("car"),
+                                                       .x = 100.0 + 0.1 * i * speed,
+                                                       .y = -1.875,
+                                                       .heading = 0.0,
+                                                       .vx = speed,
+                                                       .acceleration = 9.0}});
+    predictor.predict({}, states, [](cb::ObjectKey const&, cb::PredictedMode const&) { return cb::ObjectModel{}; });
+    for (auto const& state : states) CHECK(std::isfinite(state.x + state.speed));
+  }
 }
 
 TEST_CASE("a light that is red holds those who come") {
   cb::Predictor predictor(own_map("intersection_4way.xodr"));
-  auto const end_with = [&](cb::map::LightColor color, std::int64_t at) {
+  auto const end_with = [&](cb::map::LightColor color, std::int64_t at, double x = -35.0) {
     for (auto const* light : {"east-west", "north-south"}) predictor.set_light(light, color);
-    predictor.update(
-        system_clock + at * cycle,
-        std::vector<cb::TrackedObject>{{.key = {0, 1}, .x = -35.0, .y = -1.75, .heading = 0.0, .vx = 10.0}});
+    predictor.update(system_clock + at * cycle,
+                     std::vector<cb::TrackedObject>{{.key = {0, 1}, .x = x, .y = -1.75, .heading = 0.0, .vx = 10.0}});
     std::vector<cb::PredictedState> states(60);
     predictor.predict({.steps = 60}, states);
     return states.back();
@@ -86,12 +121,14 @@ TEST_CASE("a light that is red holds those who come") {
   CHECK(end_with(LightColor::red, 1).speed < 0.5);
   CHECK(end_with(LightColor::green, 2).speed > 4.0);
   CHECK(end_with(LightColor::off, 3).speed > 4.0);
+  for (int i = 4; i < 14; ++i) end_with(LightColor::yellow, i, -60.0);
+  CHECK(end_with(LightColor::yellow, 14, -60.0).speed < 0.5);  // it has been so for a second
   support::says("no such light", [&] { return predictor.set_light("no such light", LightColor::red), 0; });
 }
 
 TEST_CASE("the predictor says what is wrong with a map, an option or a place") {
   support::says("^no/such.xodr", [] { return cb::Predictor("no/such.xodr"); });
-  support::says("origin", [] { return cb::Predictor(own_map("highway.xodr"), {}, cb::MapOrigin{}); });
+  support::says("origin", [] { return cb::Predictor(own_map("highway.xodr"), {}, cb::map::Lanelet2Origin{}); });
   support::says("there is no map", [] { return cb::Predictor(std::shared_ptr<cb::map::Map const>()); });
   support::says("existence", [] { return cb::Predictor(own_map("highway.xodr"), {.existence = 2.0}); });
   cb::Predictor predictor(own_map("highway.xodr"));
@@ -100,7 +137,7 @@ TEST_CASE("the predictor says what is wrong with a map, an option or a place") {
 
 TEST_CASE("the predictor reads maps of other kinds, too") {
   if (auto const file = corpus::find("lanelet2/mapping_example.osm")) {
-    cb::Predictor const predictor(file->string(), {}, cb::MapOrigin{49.0, 8.4});
+    cb::Predictor const predictor(file->string(), {}, cb::map::Lanelet2Origin{49.0, 8.4});
     CHECK(predictor.map() != nullptr);
   }
   if (auto const file = corpus::find("scenarios/commonroad/ZAM_Tutorial-1_2_T-1.xml"))
@@ -171,6 +208,10 @@ TEST_CASE("C sees the same as C++, and an error for what it must not do") {
   fails(cambium_predict(c, &request, states_in_c.data(), 120, modes_in_c.data(), 6), "PredictionRequest.steps");
   fails(cambium_predict(c, nullptr, nullptr, 0, nullptr, 0), "null");
   fails(cambium_update(nullptr, 0, nullptr, 0, nullptr), "null");
+  auto* const empty = cambium_open(own_map("highway.xodr").c_str(), nullptr);
+  auto const usual = cambium_request_default();
+  CHECK(cambium_predict(empty, &usual, nullptr, 0, nullptr, 0) == 1);
+  cambium_close(empty);
   fails(cambium_set_light(c, "1", 9), "colour");
   fails(cambium_prepare(c, not_a_number, 0.0, 1.0), "prepare");
   CHECK(cambium_open("no/such.xodr", nullptr) == nullptr);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,22 +20,12 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/random.hpp"
+#include "objects.hpp"
 
 namespace cb = cambium;
+using objects::cycle, objects::not_a_number, objects::object, objects::system_clock;
 
 namespace {
-
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr std::int64_t system_clock = 1'764'580'000'000'000'000, cycle = 100'000'000;  // [ns]
-
-cb::TrackedObject object(std::uint64_t id, double x, double y, double heading, double speed) {
-  return {.key = {0, id},
-          .x = x,
-          .y = y,
-          .heading = heading,
-          .vx = speed * std::cos(heading),
-          .vy = speed * std::sin(heading)};
-}
 
 /// The world `seconds` later.
 cb::TrackedWorld later(cb::TrackedWorld world, double seconds) {
@@ -259,9 +250,15 @@ TEST_CASE("whatever a sensor sends, the tracker answers, and all that it predict
     std::vector<cb::GivenTrajectory> const given{{{0, cb::uniform_index(random, 12)}, course, number(0.0, 1.0)},
                                                  {{0, 3}, course, number(0.0, 1.0)}};
     states.assign(3 * tracker.objects().size() * 10, {not_a_number, 0.0, 0.0, 0.0});
+    auto const choose = [&](cb::ObjectKey const& key, cb::PredictedMode const&) {
+      using Chosen = std::optional<cb::TrackedWorld::Behavior>;
+      if (key.low % 3 == 0) return Chosen(cb::ConstantTurn{});
+      auto const driver = tracker.driver_of(key);
+      return driver && i % 4 == 0 ? Chosen(*driver) : Chosen();
+    };
     auto const modes = tracker.predict(
-        {.steps = 10, .step = 0.05 + 0.5 * cb::uniform01(random), .modes = 3, .joint = i % 3 == 0, .given = given},
-        states);
+        {.steps = 10, .step = 0.05 + 0.8 * cb::uniform01(random), .modes = 3, .joint = i % 3 == 0, .given = given},
+        states, choose);
     for (auto const& [x, y, heading, speed] : states) REQUIRE(std::isfinite(x + y + heading + speed));
     for (std::size_t o = 0; o < modes.objects.size(); ++o) {
       double const sum = modes.mode(0, o).probability + modes.mode(1, o).probability + modes.mode(2, o).probability;

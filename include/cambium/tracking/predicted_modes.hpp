@@ -25,16 +25,17 @@ enum class Maneuver : std::uint8_t {
   changes_left,   ///< into the lane to its left
   changes_right,  ///< likewise
   keeps_lane,     ///< although it has begun to change
-  goes_first,     ///< at the next junction, although it has to yield
+  goes_first,     ///< heeds nobody at junctions, although it has to yield
   brakes_on,      ///< as hard as measured, to a standstill
   starts,         ///< although it stands for no reason
   given,          ///< a trajectory of the host
   none,           ///< the object has no mode of this number, or is not tracked
 };
 
-/// One of the ways in which an object may go on.
+/// One of the ways in which an object may go on. One that the object does not have has the maneuver `none`, the
+/// probability 0, and the states of what is expected.
 struct PredictedMode {
-  double probability = 0.0;  ///< of all that the object may do; in a joint prediction, that of all objects' modes
+  double probability = 0.0;  ///< among the modes that were asked for: they sum to 1 per object, joint ones over all
   Maneuver maneuver = Maneuver::none;
   LaneId lane = none<LaneId>;  ///< in which it is at the end; none off the lanes
 
@@ -47,7 +48,7 @@ struct PredictedMode {
 struct GivenTrajectory {
   ObjectKey key{};
   /// After one step, two steps, ... of the prediction; where the heading or the speed is not finite, those that the
-  /// positions have.
+  /// positions have. A vehicle that moves against its heading reverses.
   std::span<PredictedState const> states;
   double probability = 1.0;
 };

@@ -45,7 +45,7 @@ enum class ObjectClass : std::uint8_t {
 /// Which point of the object its position is.
 enum class ObjectPoint : std::uint8_t {
   box_center,
-  rear_axle,  ///< middle of it, for vehicles: cambium's reference point
+  rear_axle,  ///< middle of it: cambium's reference point; of what has no two axles of wheels beside, the box's centre
 };
 
 /// What is known of the heading.

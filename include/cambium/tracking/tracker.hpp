@@ -66,10 +66,9 @@ class Tracker {
       : world_(map), options_(options), driver_(driver) {
     check_parameters(options, "tracker");
     detail::check_if_described(driver, "tracker: driver");
-    // A way far to the east of the map, which leads away from it: on it is whatever is on no lane, always before its
-    // begin.
-    auto const& bounds = map->bounds();
-    double const east = bounds.min_x <= bounds.max_x ? bounds.max_x + 1e5 : 0.0;
+    // A way east of all that may be tracked, which leads away from there: on it is whatever is on no lane, always
+    // before its begin.
+    constexpr double east = 3e8;  // [m]
     std::vector<geometry::Point> const way{{east, 0.0}, {east + 20.0, 0.0}};
     off_lanes_ = detail::numbered_road(*map, {}, map::build_free_corridor(*map, way), "tracker");
   }
@@ -139,15 +138,18 @@ class Tracker {
   /// Predicts the tracked objects into `states`, an array `[mode, object, step]` of the caller's; each of
   /// `request.modes` modes is a rollout of the world. In a mode an object follows one of its ways, or deviates from
   /// what is expected of it (`Maneuver`). `choose(key, mode)` may return another behaviour of the world's set that
-  /// drives the object in that mode, as `std::optional<World::Behavior>`. An object that is not tracked has no mode,
+  /// drives the object in that mode, as `std::optional<World::Behavior>`; a `Driver` carries out the maneuver, and is
+  /// not taken where the object is on no lane. It must not update the tracker; what it throws passes through.
+  /// `mode.probability` is the mode's share of all that the object may do. An object that is not tracked has no mode,
   /// and zeros as states. Rollouts take steps of up to 0.3 s; states between are interpolated. The same request gives
   /// the same bits. Throws `ParameterError` if a number of the request is out of range or `states` is too small
   /// (nothing is written then), or a parameter of a chosen behaviour. O(modes * agents * steps), plus O(agents * modes)
   /// for a joint one.
   template <class Choose>
   PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states, Choose const& choose) {
+    auto const driver = [this](ObjectTrack const& track) { return driver_of(track); };
     return rollouts_.predict(
-        world_, tracks_, off_lanes_, request, states, [&](ObjectTrack const& track) { return driver_of(track); },
+        typename Rollouts::template Job<decltype(driver)>{world_, tracks_, off_lanes_, request, driver}, states,
         choose);
   }
   PredictedModes predict(PredictionRequest const& request, std::span<PredictedState> states) {
@@ -159,6 +161,7 @@ class Tracker {
   using Set = typename World::Behaviors;
 
   using ObjectTrack = detail::ObjectTrack<World>;
+  using Rollouts = detail::Rollouts<World, Driver>;
 
   /// Moves the world, and with it what is predicted of each track, on by `gap` [s].
   void advance(double gap) {
@@ -172,6 +175,10 @@ class Tracker {
       if (record.status != AgentStatus::driving) continue;
       track.state = record.state;
       track.acceleration = static_cast<double>(record.acceleration);
+      for (std::size_t k = 1; k < track.ways.size(); ++k) {
+        auto& way = track.ways[k];
+        way.place = detail::seen_place(world_.map(), *way.road, way.place, track.moving().pose, true);
+      }
       if (!track.ways.empty()) track.ways.front().place = record.lane;
     }
   }
@@ -214,8 +221,9 @@ class Tracker {
 
   void judge_motion(ObjectTrack& track, TrackedObject const& object) const {
     constexpr double against = 2.3, bends_off = 0.5, ahead = 2.5, drifts = 0.25;  // [rad], [rad], [s], [m/s]
-    track.stays = object.kind == ObjectClass::obstacle || object.is_parked;
-    if (track.stays) {
+    bool const stays = object.kind == ObjectClass::obstacle || object.is_parked;
+    track.may_drive = !stays && !detail::is_on_foot(object);
+    if (stays) {
       track.motion = ObjectMotion::stands;
     } else if (detail::is_on_foot(object)) {
       track.motion = track.state.speed < detail::standing_object ? ObjectMotion::stands : ObjectMotion::walks;
@@ -306,7 +314,7 @@ class Tracker {
       auto const& way = track.ways.front();
       double const limit = way.road->corridors[way.place.corridor].speed_limit_at(way.place.s);
       auto& factor = driver.template heed<SpeedLimit>().factor;
-      factor = std::clamp(track.desired_speed / limit, factor, 3.0);
+      if (limit > 0.0) factor = std::clamp(track.desired_speed / limit, factor, 3.0);
     }
     return driver;
   }
@@ -314,7 +322,7 @@ class Tracker {
   /// Learns the speed that a driver desires from what it drives while nothing hinders it, and who stands although
   /// nothing makes it wait: that one stays.
   void learn(typename World::RosterType& roster) {
-    constexpr double slowest = 2.0, near = 20.0, headway = 3.0, pickup = 2.0, starts = 0.3;
+    constexpr double slowest = 2.0, highest = 100.0, near = 20.0, headway = 3.0, pickup = 2.0, starts = 0.3;
     std::vector<Slot> staying;
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       auto& track = tracks_[i];
@@ -329,7 +337,7 @@ class Tracker {
         track.motion = ObjectMotion::stands;
         staying.push_back(slot);
       } else {
-        double const now = std::max(slowest, speed + pickup * std::max(0.0, track.acceleration));
+        double const now = std::clamp(speed + pickup * std::max(0.0, track.acceleration), slowest, highest);
         track.desired_speed = hindered ? std::max(track.desired_speed, now) : now;
         roster.agents[slot].behavior = behavior_of(track);
       }
@@ -367,7 +375,7 @@ class Tracker {
   std::unordered_map<ObjectKey, std::size_t> places_;
   std::vector<ObjectKey> keys_;
   std::vector<Verdict> verdicts_;
-  detail::Rollouts<World, Driver> rollouts_;
+  Rollouts rollouts_;
 };
 
 }  // namespace cambium::inline v0_1

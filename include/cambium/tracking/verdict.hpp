@@ -26,7 +26,7 @@ enum class Refusal : std::uint8_t {
   not_finite,    ///< its position or velocity is missing or not finite
   out_of_range,  ///< it is farther than 1e8 m from the origin, or faster than 150 m/s
   duplicate,     ///< an object before it in the list has its key
-  too_old,       ///< it, or the list, was measured before what the tracker has, or more than a second before the list
+  too_old,       ///< it was measured more than a second from its list, or that is not newer than the last one
   unlikely,      ///< its existence is less probable than `TrackerOptions::existence`
 };
 
@@ -58,7 +58,7 @@ struct Verdict {
       "its position or velocity is missing or not a finite number",
       "it is farther than 1e8 m from the origin, or faster than 150 m/s",
       "an object before it in the list has the same key",
-      "it was measured before what the tracker has, or more than a second before its list",
+      "it was measured more than a second before or after its list, or that is not newer than the last one",
       "that it exists is less probable than TrackerOptions::existence"};
   return sentences[static_cast<std::uint8_t>(refusal)];
 }

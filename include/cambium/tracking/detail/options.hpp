@@ -30,6 +30,12 @@ struct Option {
   std::size_t place = 0;  ///< of its way among the object's, or of its trajectory among those given
 };
 
+/// Whether a state of the host's is somewhere.
+[[nodiscard]] inline bool is_place(PredictedState const& state) {
+  constexpr double farthest = 1e8;  // [m]
+  return std::abs(state.x) <= farthest && std::abs(state.y) <= farthest;
+}
+
 /// Throws `ParameterError` if a request cannot be answered into `room` states.
 inline void check_request(PredictionRequest const& request, std::size_t objects, std::size_t room) {
   constexpr std::size_t most_steps = 10'000, most_modes = 256;
@@ -147,12 +153,15 @@ void list_options(World& world, Slot slot, ObjectTrack const& track, std::span<G
   options.clear();
   for (std::size_t i = 0; i < given.size(); ++i)
     if (given[i].key == track.key && given[i].probability > 0.0 && std::isfinite(given[i].probability) &&
-        !given[i].states.empty() && std::isfinite(given[i].states[0].x + given[i].states[0].y))
+        !given[i].states.empty() && is_place(given[i].states[0]))
       options.push_back({std::min(given[i].probability, most), Maneuver::given, i});
+  double const all = std::accumulate(options.begin(), options.end(), 0.0,
+                                     [](double sum, Option const& option) { return sum + option.probability; });
+  for (auto& option : options) option.probability /= all;
   bool const stands = track.motion == ObjectMotion::stands;
   if (options.empty() && !track.ways.empty() && !stands) add_ways<Driver>(world.observe(slot), track, horizon, options);
   if (options.empty()) options.push_back({});
-  if (stands && !track.stays && !track.ways.empty() && options.front().maneuver == Maneuver::as_expected) {
+  if (stands && track.may_drive && !track.ways.empty() && options.front().maneuver == Maneuver::as_expected) {
     options.front().probability = 1.0 - starts;
     options.push_back({starts, Maneuver::starts, 0});
   }
@@ -163,7 +172,8 @@ void list_options(World& world, Slot slot, ObjectTrack const& track, std::span<G
 }
 
 /// The `most` most probable combinations of one option each of independent objects, whose options are sorted: the
-/// numbers of the options, and the probabilities relative to that of the first one. O(objects * most * options).
+/// numbers of the options, and the probabilities relative to that of the first one. O(objects * most * (objects +
+/// options * log)).
 struct Combinations {
   std::vector<std::vector<std::uint8_t>> chosen;
   std::vector<double> odds;

@@ -93,7 +93,7 @@ struct ObjectTrack {
   } last{};
   double desired_speed = 0.0;  ///< learnt; 0: not yet [m/s]
   ObjectMotion motion = ObjectMotion::none;
-  bool stays = false;     ///< the host knows that it does not move
+  bool may_drive = true;  ///< it is neither on foot nor known to stay
   std::vector<Way> ways;  ///< the most probable one first; none: it is off the lanes
   typename World::Behaviors::Memory memory;
 
